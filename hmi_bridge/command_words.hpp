@@ -37,6 +37,7 @@ enum class CommandKind : std::int32_t {
     override_velocity,
     reset_peaks,
     reset_statistics,
+    measure,
 };
 
 /// What a command acts on. `_or_all`: also "all". point: an input or an output, as its request says.
@@ -51,7 +52,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 23> command_words{{
+inline constexpr std::array<CommandWord, 24> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -86,6 +87,8 @@ inline constexpr std::array<CommandWord, 23> command_words{{
      "the peaks of the following error begin anew"},
     {CommandKind::reset_statistics, "reset_statistics", runtime::OperatorAction::reset_statistics, TargetKind::none, "", "",
      "maxima and histograms of cycle and tasks begin anew"},
+    {CommandKind::measure, "measure", runtime::OperatorAction::measure, TargetKind::axis, "", "",
+     "measure while held: press once with what, renew each 50 ms; stop lets go"},
 }};
 
 namespace command_word_check {
@@ -93,7 +96,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::reset_statistics) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::measure) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

@@ -31,6 +31,16 @@ public:
     [[nodiscard]] virtual Drive drive(std::uint16_t axis) = 0;
     /// For diagnosis: its scripts may be asked to carry more. nullptr: there is none.
     [[nodiscard]] virtual ecat::Master* bus() { return nullptr; }
+    /// Samples of a measurement, oldest first; false: none is there.
+    virtual bool next_measure_sample(axes::MeasureSample& out) {
+        (void)out;
+        return false;
+    }
+    /// As configured; nullptr where nobody knows. Lives as long as the machine.
+    [[nodiscard]] virtual const axes::AxisConfig* axis_config(std::uint16_t axis) const {
+        (void)axis;
+        return nullptr;
+    }
     // --- any thread (layout(), too) ---
     /// Every signal of the newest cycles; nullptr: this machine keeps none. Lives as long as the machine.
     [[nodiscard]] virtual const runtime::SignalRows* signals() const { return nullptr; }

@@ -25,6 +25,10 @@ public:
     [[nodiscard]] const runtime::SignalRows* signals() const override { return &machine_.signals(); }
     [[nodiscard]] ecat::Master* bus() override { return &machine_.bus(); }
     [[nodiscard]] runtime::MachineTimes times() const override { return machine_.times(); }
+    bool next_measure_sample(axes::MeasureSample& out) override { return machine_.next_measure_sample(out); }
+    [[nodiscard]] const axes::AxisConfig* axis_config(std::uint16_t axis) const override {
+        return axis < machine_.config().axes.size() ? &machine_.config().axes[axis].axis : nullptr;
+    }
     runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override { return machine_.request_stop(axis); }
     runtime::StopLevels::Ticket release_jog(std::uint16_t axis) override { return machine_.release_jog(axis); }
     runtime::StopLevels::Ticket request_shutdown() override { return machine_.request_shutdown(); }

@@ -38,7 +38,11 @@ struct PrintedMarks {
 struct AxisSimulation {
     double inertia = 2e-4, viscous_friction = 1e-3, coulomb_friction = 0.05, load_torque = 0;  ///< SI at the motor shaft
     double rated_torque = 1.27;                                                                ///< N m
-    double start = 0;                                                                          ///< u: where the axis stands at power-on
+    double breakaway_torque = 0;       ///< N m: friction at standstill; 0 = as Coulomb
+    axes::sim::ElasticLoad elastic{};  ///< a load behind a shaft that twists
+    axes::sim::Cogging cogging{};
+    axes::sim::ServoGains gains{};                         ///< of the drive's loops
+    double start = 0;                                      ///< u: where the axis stands at power-on
     double racked = 0;                                     ///< u: how far the follower of a gantry is ahead of its leader then
     std::optional<double> negative_stop, positive_stop;    ///< u: hard stops
     std::optional<double> negative_limit, positive_limit;  ///< u: limit switches

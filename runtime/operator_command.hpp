@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "axes/excitation/measure_order.hpp"
 #include "axes/words/types.hpp"
 #include "core/fixed_text.hpp"
 #include "core/time.hpp"
@@ -54,6 +55,10 @@ enum class OperatorAction : std::uint8_t {
     override_velocity,  ///< axis or all; value = 0 to 1, whoever owns it; stays until it is changed [bad_value]
     reset_peaks,        ///< axis or all: the peaks of its following error begin anew
     reset_statistics,   ///< of the cycle and the tasks: maxima and histograms begin anew
+    measure,  ///< axis; flag = the button was pressed: begins what `measure` says. Without it: a heartbeat, as of a jog. One axis of the
+              ///< machine at a time [wrong_mode in automatic; not_possible_now while another is measured; bad_value for an order
+              ///< that gives no path; not_homed where it has software limits, not_at_standstill, beyond_software_limit for the whole
+              ///< path and a stop from it; stale when there is nothing to renew]
 };
 
 /// One command. Trivially copyable: goes through a ring.
@@ -65,6 +70,7 @@ struct OperatorCommand {
     std::uint16_t axis = 0xFFFF;
     std::uint16_t index = 0xFFFF;
     double value = 0, value2 = 0;
+    axes::MeasureOrder measure;               ///< of a measure
     std::uint32_t client = 0;                 ///< who; answers go there
     std::uint64_t sequence = 0;               ///< of the client; a repeated one is answered again, not executed again
     Instant expires{};                        ///< older than this at drain: refused as stale

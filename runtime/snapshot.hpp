@@ -18,6 +18,7 @@
 #include "runtime/command_events.hpp"
 #include "runtime/forced_point.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/measure_state.hpp"
 #include "runtime/passed_alarms.hpp"
 
 namespace taktwerk::runtime {
@@ -86,6 +87,7 @@ struct Snapshot {
     std::array<CommandEvent, CommandEvents::capacity> events{};  ///< the first event_count are valid, newest last
     std::size_t event_count = 0;
     std::uint64_t event_revision = 0, events_dropped = 0;
+    MeasureState measure;
 };
 
 /// Names and units that go with a snapshot; fixed when the machine is built.

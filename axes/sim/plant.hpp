@@ -17,6 +17,8 @@ public:
 
     [[nodiscard]] double position() const noexcept { return position_; }  ///< counts, machine coordinates
     [[nodiscard]] double velocity() const noexcept { return velocity_; }  ///< counts/s
+    /// counts; of an elastic load, else the motor's.
+    [[nodiscard]] double load_position() const noexcept { return stiffness_ > 0 ? load_position_ : position_; }
     [[nodiscard]] bool negative_limit() const noexcept { return position_ <= config_.negative_limit; }
     [[nodiscard]] bool positive_limit() const noexcept { return position_ >= config_.positive_limit; }
     [[nodiscard]] bool home_switch() const noexcept {
@@ -39,9 +41,13 @@ public:
     static constexpr double brake_friction = 2;  ///< rated torques
 
 private:
+    [[nodiscard]] double shaft_torque() const noexcept;
+
     PlantConfig config_;
     double rad_per_count_;
     double position_, velocity_ = 0;
+    double stiffness_ = 0;                      // N m/rad, of the shaft to an elastic load
+    double load_position_, load_velocity_ = 0;  // counts, counts/s; of it
     bool jammed_ = false, held_ = false;
 };
 

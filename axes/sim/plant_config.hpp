@@ -16,15 +16,40 @@ enum class Battery : std::uint8_t {
     empty,  ///< turns are forgotten when the drive loses power
 };
 
+/// What of the load hangs behind a shaft that twists. load_inertia 0: everything is one mass.
+struct ElasticLoad {
+    double load_inertia = 0;  ///< kg m2, part of PlantConfig::inertia
+    double frequency = 0;     ///< Hz, of the load alone with the motor held: the anti-resonance
+    double damping = 0;       ///< N m s/rad, between motor and load
+};
+
+/// Torque over the angle of the motor: magnets or a pump pull by it. amplitude 0: none.
+struct Cogging {
+    double amplitude = 0;  ///< N m
+    double periods = 0;    ///< in a turn of the motor
+};
+
+/// The loops of the drive. Gains of a plainly tuned servo.
+struct ServoGains {
+    double position = 80;     ///< 1/s
+    double velocity = 500;    ///< 1/s
+    double integral = 12000;  ///< 1/s2
+    double feed_forward = 1;  ///< part of the velocity of the target that is added to what the position loop asks for
+};
+
 struct PlantConfig {
     std::int64_t counts_per_revolution = 10000;
     double inertia = 2e-4;           ///< kg m2, motor and load together
     double viscous_friction = 1e-3;  ///< N m s/rad
     double coulomb_friction = 0.05;  ///< N m
-    double load_torque = 0;          ///< N m, constant (gravity); positive pushes to negative
-    double rated_torque = 1.27;      ///< N m: 1.0 of the port
-    double maximum_torque = 3.0;     ///< in rated torques
-    Duration brake_closing{};        ///< from the drive's word until the holding brake holds; 0: it is never late
+    double breakaway_torque = 0;     ///< N m, friction at standstill; 0 = as Coulomb
+    ElasticLoad elastic;
+    Cogging cogging;
+    ServoGains gains;
+    double load_torque = 0;       ///< N m, constant (gravity); positive pushes to negative
+    double rated_torque = 1.27;   ///< N m: 1.0 of the port
+    double maximum_torque = 3.0;  ///< in rated torques
+    Duration brake_closing{};     ///< from the drive's word until the holding brake holds; 0: it is never late
     // travel, in counts; infinite = none
     double start = 0;
     double negative_stop = -std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
 #pragma once
 // The control loops inside a simulated drive: position P with velocity feed-forward, velocity PI with acceleration
-// feed-forward, torque limit. Gains are those of a plainly tuned servo; they give a small, honest following error.
+// feed-forward, torque limit. Gains (ServoGains) are those of a plainly tuned servo; they give a small, honest following error.
 
 #include <algorithm>
 
@@ -16,29 +16,26 @@ struct Demand {
 
 class ServoLoop {
 public:
-    static constexpr double position_gain = 80.0;     ///< 1/s
-    static constexpr double velocity_gain = 500.0;    ///< 1/s
-    static constexpr double integral_gain = 12000.0;  ///< 1/s2
-
     /// Torque for one inner step, limited to +- limit N m. `measured` is the quantised encoder position.
     [[nodiscard]] double position_control(const Plant& plant, const Demand& demand, double measured, double limit, double dt) noexcept {
-        const double wanted = demand.velocity + position_gain * (demand.position - measured);
+        const auto& gains = plant.config().gains;
+        const double wanted = gains.feed_forward * demand.velocity + gains.position * (demand.position - measured);
         return velocity_control(plant, wanted, demand.acceleration, limit, dt);
     }
     [[nodiscard]] double velocity_control(const Plant& plant, double wanted, double acceleration, double limit, double dt) noexcept {
         const double error = wanted - plant.velocity();
-        const double raw = plant.torque_for(acceleration + velocity_gain * error) + integral_;
+        const double raw = plant.torque_for(acceleration + plant.config().gains.velocity * error) + integral_;
         if (raw > limit) return limit;
         if (raw < -limit) return -limit;
-        integral_ += plant.torque_for(integral_gain * error) * dt;  // only while unlimited: no wind-up
+        integral_ += plant.torque_for(plant.config().gains.integral * error) * dt;  // only while unlimited: no wind-up
         return raw;
     }
     /// Torque as demanded, taken back where the motor gets faster than `fastest` counts/s (0 = no limit).
     [[nodiscard]] static double torque_control(const Plant& plant, double wanted, double fastest, double limit) noexcept {
         double torque = std::clamp(wanted, -limit, limit);
         if (fastest > 0) {
-            torque = std::min(torque, plant.torque_for(velocity_gain * (fastest - plant.velocity())));
-            torque = std::max(torque, plant.torque_for(velocity_gain * (-fastest - plant.velocity())));
+            torque = std::min(torque, plant.torque_for(plant.config().gains.velocity * (fastest - plant.velocity())));
+            torque = std::max(torque, plant.torque_for(plant.config().gains.velocity * (-fastest - plant.velocity())));
         }
         return std::clamp(torque, -limit, limit);
     }

@@ -255,6 +255,47 @@ Table<runtime::PrintedMarks> printed_marks_table() {
     return table;
 }
 
+Table<axes::sim::ElasticLoad> elastic_load_table() {
+    using E = axes::sim::ElasticLoad;
+    return {
+        "elastic_load",
+        "A part of the inertia that hangs behind a belt or a coupling which twists: a resonance to measure.",
+        {
+            required(field("inertia", &E::load_inertia, quantity(Dimension::inertia, 0), "of that part, at the motor shaft")),
+            required(field("frequency", &E::frequency, quantity(Dimension::frequency, 0), "at which it swings while the motor is held")),
+            field("damping", &E::damping, quantity(Dimension::friction, 0), "between motor and load"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::sim::Cogging> cogging_table() {
+    using C = axes::sim::Cogging;
+    return {
+        "cogging",
+        "A torque that comes and goes with the angle of the motor.",
+        {
+            required(field("amplitude", &C::amplitude, quantity(Dimension::torque, 0), "half of what lies between its highest and lowest")),
+            required(field("periods", &C::periods, number(1, 1000), "in a turn of the motor")),
+        },
+        {},
+        {}};
+}
+
+Table<axes::sim::ServoGains> servo_gains_table() {
+    using G = axes::sim::ServoGains;
+    return {"gains",
+            "How the loops of the simulated drive are tuned.",
+            {
+                field("position", &G::position, number(0, 1000), "position gain, 1/s"),
+                field("velocity", &G::velocity, number(1, 4000), "velocity gain, 1/s"),
+                field("integral", &G::integral, number(0, 1'000'000), "integral gain of the velocity loop, 1/s2"),
+                field("feed_forward", &G::feed_forward, number(0, 2), "part of the target's velocity that is fed forward"),
+            },
+            {},
+            {}};
+}
+
 Table<AxisSimulation> axis_simulation_table() {
     using S = AxisSimulation;
     return {
@@ -267,6 +308,12 @@ Table<AxisSimulation> axis_simulation_table() {
             field("load_torque", &S::load_torque, quantity(Dimension::torque),
                   "constant load, such as weight; positive pushes to negative"),
             field("rated_torque", &S::rated_torque, quantity(Dimension::torque, 0), "of the motor"),
+            with_default(field("breakaway_torque", &S::breakaway_torque, quantity(Dimension::torque, 0), "friction at standstill"),
+                         "as coulomb_friction"),
+            field("elastic_load", &S::elastic, section(elastic_load_table()),
+                  "a part of the inertia behind a shaft that twists; without it: none"),
+            field("cogging", &S::cogging, section(cogging_table()), "torque over the angle of the motor; without it: none"),
+            field("gains", &S::gains, section(servo_gains_table()), "of the simulated drive's loops"),
             field("start", &S::start, quantity(Dimension::position), "where the axis stands at power-on"),
             field("racked", &S::racked, quantity(Dimension::position), "how far the follower of a gantry is ahead of its leader then"),
             field_via<S>(

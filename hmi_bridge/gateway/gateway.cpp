@@ -27,6 +27,9 @@ std::string with_unit(double value, std::string_view unit) { return fmt::format(
 
 Error bad_value(std::string what, std::string remedy) { return {"command.bad_value", "", std::move(what), std::move(remedy)}; }
 
+/// Lives by renewals.
+bool is_held(CommandKind kind) noexcept { return kind == CommandKind::jog || kind == CommandKind::measure; }
+
 bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
 
 /// Since it was given, as far as anybody knows: by the client's clock, and by how long it has waited here, whichever is longer.
@@ -97,7 +100,8 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
 
 bool CommandRequest::same_as(const CommandRequest& other) const noexcept {
     return kind == other.kind && target == other.target && output == other.output && press == other.press &&
-           commissioning == other.commissioning && mode == other.mode && same(value, other.value) && same(value2, other.value2);
+           commissioning == other.commissioning && mode == other.mode && same(value, other.value) && same(value2, other.value2) &&
+           measure == other.measure;
 }
 
 TargetKind target_kind(const CommandWord& word, const CommandRequest& request) noexcept {
@@ -141,7 +145,7 @@ void Gateway::close(ClientId id) {
 }
 
 std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request, Instant now) const {
-    const auto longest = request.kind == CommandKind::jog ? longest_jog_validity : longest_validity;
+    const auto longest = is_held(request.kind) ? longest_jog_validity : longest_validity;
     if (request.valid_for < std::chrono::milliseconds{1} || request.valid_for > longest)
         return Refusal{Answer::bad_value,
                        bad_value(fmt::format("a validity of {:g} ms is outside its range", milliseconds(request.valid_for)),
@@ -162,21 +166,22 @@ std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request
 
 std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request, const OperatorCommand& command, Instant now) const {
     const bool moves = request.kind == CommandKind::move || request.kind == CommandKind::home;
-    if (!moves && (request.kind != CommandKind::jog || request.value == 0)) return std::nullopt;
+    if (!moves && (!is_held(request.kind) || lets_go(request))) return std::nullopt;
     const auto found = jogs_.find(command.axis);
     const bool mine = found != jogs_.end() && found->second.client == request.client;
     const bool alive = found != jogs_.end() && now - found->second.renewed <= jog_session;
     if (alive && !mine) {
         const auto other = clients_.find(found->second.client);
-        return Refusal{Answer::no_control,
-                       {"command.no_control", "",
-                        fmt::format("{} is jogging this axis", other == clients_.end() ? "another client" : other->second.name),
-                        "Wait until it lets go."}};
+        return Refusal{
+            Answer::no_control,
+            {"command.no_control", "",
+             fmt::format("{} is jogging or measuring this axis", other == clients_.end() ? "another client" : other->second.name),
+             "Wait until it lets go."}};
     }
     if (!moves && !request.press && !(mine && alive)) {
         runtime::CommandAnswer stale;
         stale.answer = Answer::stale;
-        return Refusal{Answer::stale, explain(stale, CommandKind::jog, "", {})};
+        return Refusal{Answer::stale, explain(stale, request.kind, "", {})};
     }
     return std::nullopt;
 }
@@ -193,8 +198,8 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     command.client = request.client;
     command.sequence = request.sequence;
     const bool of_a_point = word->target == TargetKind::point;
-    command.flag =
-        request.kind == CommandKind::enable || (request.kind == CommandKind::jog && request.press) || (of_a_point && request.output);
+    command.flag = request.kind == CommandKind::enable || (is_held(request.kind) && request.press) || (of_a_point && request.output);
+    command.measure = request.measure;
     command.mode = request.mode;
     command.value = request.value;
     command.value2 = request.value2;
@@ -203,7 +208,8 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                        {"command.no_control", "", "commissioning commands are taken from the local socket only",
                         "Use the command line on this computer."}};
     if (request.commissioning) command.owner = axes::Owner::commissioning;
-    if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output || of_a_point))
+    if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output ||
+                                         request.kind == CommandKind::measure || of_a_point))
         return Refusal{
             Answer::no_control,
             {"command.no_control", "", fmt::format("{} is not taken over LCM, where nobody knows who asks and who is gone", word->word),
@@ -313,7 +319,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     entry->state = Entry::State::waiting;
     client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
     client.forces = client.forces || request.kind == CommandKind::force;
-    if (request.kind == CommandKind::jog) jogs_[command.axis] = {request.client, now};
+    if (is_held(request.kind)) jogs_[command.axis] = {request.client, now};
 }
 
 void Gateway::let_go(const CommandRequest& request) {
@@ -356,7 +362,7 @@ void Gateway::settle_levels(Instant now) {
 }
 
 void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
-    if (entry.request.kind != CommandKind::jog || answer == Answer::accepted) return;
+    if (!is_held(entry.request.kind) || answer == Answer::accepted) return;
     const auto axis = find_target(machine_.layout(), TargetKind::axis, entry.request.target);
     if (!axis) return;
     const auto jog = jogs_.find(*axis);

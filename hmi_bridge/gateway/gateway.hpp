@@ -49,11 +49,12 @@ struct CommandRequest {
     std::uint64_t sequence = 0;  ///< >= 1
     CommandKind kind = CommandKind::none;
     std::string target;          ///< name; "all" (or empty for stop and reset) where the table allows it
-    bool press = false;          ///< jog: the first one; renewals have false
+    bool press = false;          ///< jog, measure: the first one; renewals have false
     bool output = false;         ///< force, unforce: `target` is an output, not an input
     bool commissioning = false;  ///< commands in the name of commissioning instead of the operator panel
     runtime::Mode mode = runtime::Mode::manual;
     double value = 0, value2 = 0;
+    axes::MeasureOrder measure;                    ///< of a measure
     Duration valid_for = std::chrono::seconds{1};  ///< 1 ms .. 10 s; jog: up to 500 ms
     Duration age{};                                ///< since the client gave it, by the common wall clock; negative: the clocks disagree
     Arrival arrival;                               ///< how it came here; Arrival::at the epoch: just now

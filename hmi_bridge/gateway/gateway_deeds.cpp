@@ -39,6 +39,7 @@ std::string Gateway::deed(const CommandRequest& request) const {
         text += request.value == 0 ? ": let go" : fmt::format(" at {:g} {}/s", request.value, layout.axes[*axis].unit);
     if (request.kind == CommandKind::move && axis)
         text += fmt::format(" to {:g} {} at {:g} {}/s", request.value, layout.axes[*axis].unit, request.value2, layout.axes[*axis].unit);
+    if (request.kind == CommandKind::measure) text += fmt::format(": {}", name(request.measure.kind));
     if (request.kind == CommandKind::mode) text += fmt::format(" {}", hmi::word(request.mode));
     if (request.kind == CommandKind::override_velocity) text += fmt::format(" {:g} %", 100 * request.value);
     if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output || request.kind == CommandKind::force)
@@ -60,6 +61,7 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
             case CommandKind::enable:
             case CommandKind::home:
             case CommandKind::jog:
+            case CommandKind::measure:
             case CommandKind::move: hands_.lay(i, id, client.name); break;
             case CommandKind::disable:
             case CommandKind::release_control: hands_.lift(i, id); break;
@@ -71,13 +73,14 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
         if (request.value != 0 && !request.press) return;
         if (request.value != 0) told_jogs_[*axis] = id;
     }
+    if (request.kind == CommandKind::measure && !request.press) return;
     deeds_.say(client.name, deed(request), now);
 }
 
 /// The client goes: what it has asked for last, and what ends with it.
 void Gateway::note_end(ClientId id, const Client& client) {
     for (const auto& entry : client.entries)
-        if (entry.state == Entry::State::waiting && entry.request.kind != CommandKind::jog)
+        if (entry.state == Entry::State::waiting && entry.request.kind != CommandKind::jog && entry.request.kind != CommandKind::measure)
             deeds_.say(client.name, deed(entry.request) + "; it was gone before the answer", now_);
     for (auto jog = told_jogs_.begin(); jog != told_jogs_.end();) {
         if (jog->second != id) {

@@ -14,6 +14,7 @@
 #include "core/nearest_name.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/answer_line.hpp"
+#include "hmi_bridge/socket/json_measure.hpp"
 #include "hmi_bridge/socket/json_state.hpp"
 #include "hmi_bridge/socket/peer_name.hpp"
 #include "hmi_bridge/words/target_names.hpp"
@@ -22,7 +23,7 @@
 namespace taktwerk::hmi {
 namespace {
 
-constexpr std::array<std::string_view, 5> questions{"hello", "layout", "state", "alarms", "simulate"};
+constexpr std::array<std::string_view, 7> questions{"hello", "layout", "state", "alarms", "simulate", "measure_plan", "measure_result"};
 struct DriveWord {
     std::string_view word;
     DriveRequestKind kind;
@@ -106,6 +107,11 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
         request.press = fields.flag("press");
         request.valid_for = std::chrono::milliseconds{250};
     }
+    if (entry.kind == CommandKind::measure) {
+        request.press = fields.flag("press");
+        request.valid_for = std::chrono::milliseconds{250};
+        if (request.press) request.measure = read_measure_order(fields);
+    }
     std::optional<Error> mode_error;
     if (entry.kind == CommandKind::mode) {
         const auto wanted = fields.text("mode", true);
@@ -138,6 +144,7 @@ JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function
       drives_(machine, std::move(log), &gateway.hands()),
       scope_(machine.signals()),
       questions_(machine),
+      measurements_(machine),
       wall_utime_(std::move(wall_utime)) {}
 
 void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
@@ -183,6 +190,11 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         if (client == clients_.end())
             return refuse(connection, id_text,
                           {"command.not_possible_now", "", "too many clients give commands", "Close some of them and connect again."});
+        if (entry->kind == CommandKind::measure && request->press && snapshot_) {  // the cycle decides; here are the words
+            const auto axis = find_target(machine_.layout(), TargetKind::axis, request->target);
+            const auto plan = axis ? measurements_.plan(*axis, request->measure, *snapshot_) : Result<axes::ExcitationPlan>(axis.error());
+            if (!plan) return refuse(connection, id_text, plan.error());
+        }
         request->client = client->second;
         request->arrival = arrival;
         request->sequence = static_cast<std::uint64_t>(id);
@@ -198,6 +210,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     if (MachineQuestions::knows(cmd)) return questions_.ask(cmd, connection, id_text, fields, snapshot_, now);
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
+    if (answer_measure(cmd, connection, id_text, fields)) return;
     fields.integer("utime");
     const auto happening = cmd == "simulate" ? fields.text("line", true) : std::string{};
     fields.finish();
@@ -244,6 +257,38 @@ std::string JsonRequests::hello(const std::optional<std::string>& stuck, Instant
     return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+bool JsonRequests::answer_measure(std::string_view cmd, ConnectionId connection, const std::string& id, JsonFields& fields) {
+    const bool plans = cmd == "measure_plan";
+    if (!plans && cmd != "measure_result") return false;
+    fields.integer("utime");
+    const auto name = fields.text("axis", true);
+    const auto order = plans ? read_measure_order(fields) : axes::MeasureOrder{};
+    double window = plans ? 0 : fields.number("window", false);
+    fields.finish();
+    const auto with = [&](const std::string& value) {
+        answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id, cmd, value));
+        return true;
+    };
+    const auto refused = [&](const Error& error) {
+        refuse(connection, id, error);
+        return true;
+    };
+    if (fields.error()) return refused(*fields.error());
+    const auto axis = find_target(machine_.layout(), TargetKind::axis, name);
+    if (!axis) return refused(axis.error());
+    const auto& unit = machine_.layout().axes[*axis].unit;
+    if (!snapshot_) return refused({"state.not_yet", "", "the machine has not executed a cycle yet", "Ask again in a moment."});
+    if (plans) {
+        const auto plan = measurements_.plan(*axis, order, *snapshot_);
+        return plan ? with(plan_json(*plan, unit)) : refused(plan.error());
+    }
+    const auto* run = measurements_.newest(*axis);
+    const auto* config = machine_.axis_config(*axis);
+    if (run == nullptr || config == nullptr)
+        return refused({"measure.none", "axis " + name, "it was not measured since the machine was started", "Measure it first."});
+    return with(result_json(*run, *config, window));
+}
+
 void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
     DriveRequest request;
     request.kind = kind;
@@ -273,6 +318,7 @@ void JsonRequests::step(Instant now) {
         else answer(answered->connection, fmt::format(R"({{"id":{},"ok":true,{}}})", answered->id, *answered->body));
     }
     drives_.step(now);
+    measurements_.step(snapshot_);
     while (const auto done = drives_.next_answer()) {
         if (done->error) {
             refuse(done->tag, done->id, *done->error);

@@ -20,6 +20,7 @@
 #include "core/time.hpp"
 #include "hmi_bridge/gateway/drive_requests.hpp"
 #include "hmi_bridge/gateway/gateway.hpp"
+#include "hmi_bridge/gateway/measurements.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/json_fields.hpp"
 #include "hmi_bridge/socket/machine_questions.hpp"
@@ -77,6 +78,8 @@ private:
     void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text), {}}); }
 
     [[nodiscard]] std::string hello(const std::optional<std::string>& stuck, Instant now) const;
+    /// True: the request asked about a measurement and is answered.
+    bool answer_measure(std::string_view cmd, ConnectionId connection, const std::string& id, JsonFields& fields);
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 
     Gateway& gateway_;
@@ -86,6 +89,7 @@ private:
     MachineQuestions questions_;
     About about_;
     std::optional<Instant> began_;
+    Measurements measurements_;
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;

@@ -255,6 +255,20 @@ void put_slaves(JsonWriter& json, const runtime::Snapshot& s, const runtime::Mac
     json.close(']');
 }
 
+void put_measurement(JsonWriter& json, const runtime::MeasureState& m, const runtime::MachineLayout& layout) {
+    json.key("measure");
+    if (m.run == 0 || m.axis >= layout.axes.size()) return json.value(std::nullopt);
+    json.open('{');
+    json.field("run", m.run);
+    json.field("axis", layout.axes[m.axis].name);
+    json.field("kind", name(m.plan.order().kind));
+    json.field("running", m.running);
+    json.field("end", name(m.end));
+    json.field("elapsed_s", m.elapsed);
+    json.field("duration_s", m.plan.duration());
+    json.close('}');
+}
+
 void put_programs(JsonWriter& json, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
     json.open("programs", '[');
     for (std::size_t i = 0; i < s.programs.size() && i < layout.programs.size(); ++i) {
@@ -340,6 +354,7 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine,
     json.close(']');
     put_values(json, "variables", layout.variables, s.variables);
     put_values(json, "parameters", layout.parameters, s.parameters);
+    put_measurement(json, s.measure, layout);
     json.open("alarms", '[');
     put_alarms(json, s, machine);
     json.close(']');

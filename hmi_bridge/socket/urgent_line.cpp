@@ -31,7 +31,7 @@ bool asks_for(std::string_view line, std::string_view command) {
 /// Cheap: most lines are none of these. Behind a backslash any word may stand, letter by letter.
 bool may_be(std::string_view line) {
     if (line.size() > longest_line) return asks_for(line, "\"stop\"") || asks_for(line, "\"shutdown\"");
-    for (const std::string_view word : {"\"stop\"", "\"shutdown\"", "\"jog\"", "\\"})
+    for (const std::string_view word : {"\"stop\"", "\"shutdown\"", "\"jog\"", "\"measure\"", "\\"})
         if (line.find(word) != std::string_view::npos) return true;
     return false;
 }
@@ -81,15 +81,17 @@ std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::Mach
         return urgent;
     }
     const bool stop = *cmd == "stop";
-    if (!stop && *cmd != "jog") return std::nullopt;
+    const bool measures = *cmd == "measure";
+    if (!stop && !measures && *cmd != "jog") return std::nullopt;
     const auto axis = axis_of(json, layout, stop);
     urgent.unclear_axis = stop && !axis;
     if (!axis && !stop) return std::nullopt;
     urgent.axis = axis.value_or(all_axes);
     if (stop) return urgent;
     const auto velocity = json.find("velocity");
-    if (velocity == json.end() || !velocity->is_number()) return std::nullopt;
-    urgent.kind = velocity->get<double>() == 0 ? UrgentLine::Kind::jog_release : UrgentLine::Kind::jog_hold;
+    if (!measures && (velocity == json.end() || !velocity->is_number())) return std::nullopt;
+    // A measurement is let go by a stop; its velocity 0 is a number left open.
+    urgent.kind = !measures && velocity->get<double>() == 0 ? UrgentLine::Kind::jog_release : UrgentLine::Kind::jog_hold;
     const auto press = json.find("press");
     urgent.press = press != json.end() && press->is_boolean() && press->get<bool>();
     return urgent;

@@ -1,6 +1,6 @@
 #pragma once
 // Lines of the socket that must act before anything else is looked at: a stop, the end of the run, a jog that is let go. Also the press
-// of a jog, for who presses will have to let go. Any bytes may come in. Not real-time.
+// of a jog or a measurement, for who presses will have to let go. Any bytes may come in. Not real-time.
 
 #include <cstdint>
 #include <optional>

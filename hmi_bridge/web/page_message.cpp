@@ -71,7 +71,7 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
 
 bool PageMessage::may_move() const {
     if (rule == nullptr || !rule->moves) return false;
-    if (!is_jog()) return true;
+    if (!is_jog() || rule->command == "measure") return true;
     const auto velocity = request.find("velocity");
     return velocity == request.end() || !velocity->is_number() || velocity->get<double>() != 0;
 }

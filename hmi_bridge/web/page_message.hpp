@@ -29,7 +29,7 @@ struct PageMessage {
 
     /// A renewal, a press, or (false) a jog let go and everything that moves nothing.
     [[nodiscard]] bool may_move() const;
-    [[nodiscard]] bool is_jog() const { return rule != nullptr && rule->command == "jog"; }
+    [[nodiscard]] bool is_jog() const { return rule != nullptr && (rule->command == "jog" || rule->command == "measure"); }
 };
 
 struct UnreadMessage {

@@ -25,6 +25,9 @@ inline constexpr std::array command_rules{
     CommandRule{"layout", Role::viewer, false},
     CommandRule{"state", Role::viewer, false},
     CommandRule{"alarms", Role::viewer, false},
+    CommandRule{"measure", Role::engineer, true},
+    CommandRule{"measure_plan", Role::viewer, false},
+    CommandRule{"measure_result", Role::viewer, false},
     CommandRule{"drive_read", Role::viewer, false},
     CommandRule{"stop", Role::viewer, false},  // anybody may, always
     CommandRule{"take_control", Role::operates, true},

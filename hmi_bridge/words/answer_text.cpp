@@ -110,7 +110,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                                       : "Give a value inside the range.";
             break;
         case Answer::stale:
-            if (kind == CommandKind::jog) {
+            if (kind == CommandKind::measure) {
+                error.what = "the measurement is over: it was let go or stopped, or its lease ran out before the renewal came";
+                error.remedy = "Ask for its result (measure_result), which says how it ended; press again to begin anew.";
+            } else if (kind == CommandKind::jog) {
                 error.what = "the jog is over: it was let go, or its lease ran out before the renewal came (then there is an alarm)";
                 error.remedy = "Let go and press again; if its lease runs out again, the connection or this computer is too slow.";
             } else {
@@ -164,6 +167,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             } else if (kind == CommandKind::force && answer.error == axes::ErrorId::not_supported) {
                 error.what = "nobody may force this point";
                 error.remedy = "Look for it in `layout`, which says why.";
+            } else if (kind == CommandKind::measure) {
+                error.what = "another axis or another client is being measured: one at a time";
+                error.remedy = "Wait until it is over.";
             } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";
                 error.remedy = "Stop the programs first.";

@@ -41,6 +41,7 @@ public:
             for (auto& error : axes::check(binding.axis)) errors_.push_back(std::move(error));
             check_reactions(binding, subject);
             check_position_loop(config_, binding, subject, problems_);
+            check_mechanics(binding, subject);
             check_brake(binding, subject);
             if (binding.axis.simulated) check_simulated(binding, subject);
             if (binding.axis.load_encoder.on) check_load_encoder(binding, subject);
@@ -58,6 +59,21 @@ public:
     }
 
 private:
+    /// What the simulation can compute in steps of an eighth of a millisecond.
+    void check_mechanics(const AxisBinding& binding, const std::string& subject) {
+        const auto& s = binding.simulation;
+        const auto here = subject + ".simulation.elastic_load";
+        if (s.elastic.load_inertia <= 0) return;
+        if (s.elastic.load_inertia >= s.inertia)
+            return problems_.add("axis.simulation", here + ".inertia", "it is part of `inertia`, and something must be left for the motor",
+                                 fmt::format("give less than {:g} kgm2", s.inertia));
+        const double resonance = s.elastic.frequency * std::sqrt(s.inertia / (s.inertia - s.elastic.load_inertia));
+        if (s.elastic.frequency <= 0 || resonance > 500)
+            problems_.add("axis.simulation", here + ".frequency",
+                          fmt::format("motor and load would swing at {:g} Hz; the simulation computes up to 500 Hz", resonance),
+                          "give a lower frequency, above 0, or leave `elastic_load` out");
+    }
+
     void check_virtual(const AxisBinding& binding, const std::string& subject) {
         if (std::isfinite(binding.axis.limits.torque_towards(1)) || std::isfinite(binding.axis.limits.torque_towards(-1)))
             problems_.add("axis.no_torque_limit", subject + ".limits", "a virtual axis (without `slave`) has no torque",

@@ -83,6 +83,7 @@ bool Machine::submit(const OperatorCommand& command) noexcept { return impl_->de
 std::optional<CommandAnswer> Machine::next_answer() noexcept { return impl_->desk.next_answer(); }
 const Snapshot* Machine::latest() noexcept { return impl_->snapshots.latest(); }
 StopLevels::Ticket Machine::request_stop(std::uint16_t axis) noexcept { return impl_->desk.levels().stop(axis); }
+bool Machine::next_measure_sample(axes::MeasureSample& out) noexcept { return impl_->measuring.next_sample(out); }
 StopLevels::Ticket Machine::release_jog(std::uint16_t axis) noexcept { return impl_->desk.levels().release_jog(axis); }
 StopLevels::Ticket Machine::request_shutdown() noexcept { return impl_->desk.request_shutdown(); }
 bool Machine::taken(StopLevels::Ticket ticket) const noexcept { return impl_->desk.levels().taken(ticket); }

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "axes/excitation/measure_sample.hpp"
 #include "axes/port/drive_port.hpp"
 #include "core/recorder.hpp"
 #include "core/result.hpp"
@@ -91,6 +92,8 @@ public:
     std::optional<CommandAnswer> next_answer() noexcept;
     /// Service side (one reader): the newest snapshot; nullptr before the first cycle.
     const Snapshot* latest() noexcept;
+    /// Service side (one reader): the samples of a measurement (OperatorAction::measure), oldest first. False: none is there.
+    bool next_measure_sample(axes::MeasureSample& out) noexcept;
     /// Levels, not queued: any thread and signal handlers. Real-time safe, async-signal-safe; they act in the next cycle, and cannot be
     /// refused. Stop: along the ramp, whoever owns the axis; `axis` 0xFFFF means all.
     StopLevels::Ticket request_stop(std::uint16_t axis) noexcept;

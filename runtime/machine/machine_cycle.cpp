@@ -35,10 +35,11 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       modbus(body, exchanges, errors),
       positions(kept_positions(body, errors)),
       hands(body),
+      measuring(body, hands),
       programs(body, hands, errors),
-      desk(body, hands, programs),
+      desk(body, hands, measuring, programs),
       supervisor(body, drives, groups, modbus, programs, desk, positions.get()),
-      snapshots(body, programs),
+      snapshots(body, measuring, programs),
       layout(layout_of(body, drives, programs.host())),
       rows(body, programs, layout),
       words(body, drives, groups, modbus, programs, supervisor, layout),
@@ -132,6 +133,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
 
     body.requests.speak_for(no_program, now);
     desk.renew_power();
+    measuring.step();
     programs.run_tasks();
     drives.serial().hold_watchdog_outputs();
     drives.hold_brake_outputs();
@@ -163,6 +165,7 @@ void Machine::Impl::tell(const CycleTick& tick) noexcept {
     }
     programs.read_variables();
     statistics.snapshots_dropped = rows.ring().lost();
+    measuring.keep();
     snapshots.step();
     rows.step();
     if (positions) positions->watch(body.axes, body.now, body.shutting_down);

@@ -13,6 +13,7 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
+#include "runtime/machine/measuring.hpp"
 #include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/program_runner.hpp"
@@ -48,6 +49,7 @@ struct Machine::Impl {
     ModbusDevices modbus;
     std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept
     HandMotion hands;
+    Measuring measuring;
     ProgramRunner programs;
     OperatorDesk desk;
     Supervisor supervisor;

@@ -61,6 +61,7 @@ Verdict OperatorDesk::execute(const OperatorCommand& command) noexcept {
         case OperatorAction::jog:
         case OperatorAction::move_absolute:
         case OperatorAction::stop:
+        case OperatorAction::measure:
         case OperatorAction::reset:
             if (!a_person && command.action != OperatorAction::stop) return {Answer::no_control, ErrorId::owned_by_other};
             if (command.axis == all) return execute_all(command);
@@ -227,6 +228,7 @@ Verdict OperatorDesk::execute_axis(const OperatorCommand& command, std::size_t i
             wanted.position = body_.config.axes[index].axis.homing.offset;
             return verdict_of(body_.requests.submit(ref, wanted, command.owner).error);
         case OperatorAction::jog: return hands_.jog(command, index);
+        case OperatorAction::measure: return measuring_.command(command, index);
         case OperatorAction::move_absolute:
             wanted.kind = CommandKind::move_absolute;
             wanted.position = command.value;

@@ -22,9 +22,10 @@ OperatorAction action_of(StopLevel level) noexcept {
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(MachineBody& body, HandMotion& hands, ProgramRunner& programs)
+OperatorDesk::OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, ProgramRunner& programs)
     : body_(body),
       hands_(hands),
+      measuring_(measuring),
       programs_(programs),
       inbox_(inbox_size),
       answers_(inbox_size * 2),
@@ -73,7 +74,7 @@ bool OperatorDesk::overtaken(const OperatorCommand& command) const noexcept {
     if (command.action == OperatorAction::program_start)
         return command.index < programs_.programs().size() && command.after < programs_.newest_stop_of(command.index);
     const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
-                               (command.action == OperatorAction::jog && command.value != 0);
+                               command.action == OperatorAction::measure || (command.action == OperatorAction::jog && command.value != 0);
     return starts_motion && command.axis < body_.axes.size() && command.after < hands_.newest_stop(command.axis);
 }
 

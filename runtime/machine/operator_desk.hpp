@@ -11,6 +11,7 @@
 #include "core/spsc_ring.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
+#include "runtime/machine/measuring.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/stop_levels.hpp"
@@ -19,7 +20,7 @@ namespace taktwerk::runtime {
 
 class OperatorDesk {
 public:
-    OperatorDesk(MachineBody& body, HandMotion& hands, ProgramRunner& programs);
+    OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, ProgramRunner& programs);
 
     // --- other threads: as Machine has them ----------------------------------------------------------------------------------------
     bool submit(const OperatorCommand& command) noexcept { return inbox_.try_push(command); }
@@ -75,6 +76,7 @@ private:
 
     MachineBody& body_;
     HandMotion& hands_;
+    Measuring& measuring_;
     ProgramRunner& programs_;
     SpscRing<OperatorCommand> inbox_;
     SpscRing<CommandAnswer> answers_;

@@ -56,6 +56,7 @@ void SnapshotWriter::step() noexcept {
     std::ranges::copy(programs_.variables(), s.variables.begin());
     std::ranges::transform(programs_.programs(), s.programs.begin(), &ProgramRecord::state);
     std::ranges::copy(programs_.task_statistics(), s.tasks.begin());
+    s.measure = measuring_.state();
     const auto alarms = body_.log.alarms();
     s.alarm_count = alarms.size();
     std::ranges::copy(alarms, s.alarms.begin());

@@ -3,6 +3,7 @@
 
 #include "core/latest_value.hpp"
 #include "runtime/machine/machine_body.hpp"
+#include "runtime/machine/measuring.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/snapshot.hpp"
 
@@ -10,7 +11,8 @@ namespace taktwerk::runtime {
 
 class SnapshotWriter {
 public:
-    SnapshotWriter(MachineBody& body, const ProgramRunner& programs) : body_(body), programs_(programs) {}
+    SnapshotWriter(MachineBody& body, const Measuring& measuring, const ProgramRunner& programs)
+        : body_(body), measuring_(measuring), programs_(programs) {}
 
     /// Takes all memory. Before the first step().
     void prepare();
@@ -22,6 +24,7 @@ public:
 
 private:
     MachineBody& body_;
+    const Measuring& measuring_;
     const ProgramRunner& programs_;
     LatestValue<Snapshot> snapshots_;
 };

@@ -7,6 +7,7 @@
 //   departure  nothing but its time: when a frame left, as the transport measured it (the servo follows it)
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
+//            then, of a measure alone: u8 kind, u16 count, f64 distance, velocity, acceleration, from, to, period   51 bytes
 //            A level (stop_levels.hpp) is a stop, a jog with velocity 0 or a shutdown of client 0; its number stands as sequence.
 //   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
 //   request  u16 Modbus device, u16 request, u8 fault, u8 exception, u8 ever succeeded, i64 sent ns   15 bytes
@@ -61,7 +62,7 @@ inline void record_tick(Recorder& recorder, const CycleTick& tick) noexcept {
 }
 
 inline void record_command(Recorder& recorder, Instant at, const OperatorCommand& command) noexcept {
-    inbox_record::Bytes<52> bytes;
+    inbox_record::Bytes<52 + 51> bytes;
     bytes.put(static_cast<std::uint8_t>(command.action));
     bytes.put(static_cast<std::uint8_t>(command.owner));
     bytes.put(static_cast<std::uint8_t>(command.mode));
@@ -74,7 +75,14 @@ inline void record_command(Recorder& recorder, Instant at, const OperatorCommand
     bytes.put(command.sequence);
     bytes.put(command.expires);
     bytes.put(command.after);
-    recorder.append(command_channel, at, bytes.all());
+    if (command.action == OperatorAction::measure) {
+        const auto& order = command.measure;
+        bytes.put(static_cast<std::uint8_t>(order.kind));
+        bytes.put(order.count);
+        for (const double number : {order.distance, order.velocity, order.acceleration, order.from_hz, order.to_hz, order.period})
+            bytes.put(number);
+    }
+    recorder.append(command_channel, at, bytes.written());
 }
 
 inline void record_object(Recorder& recorder, Instant at, std::uint16_t program, std::uint16_t place, ObjectOutcome outcome,

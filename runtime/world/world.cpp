@@ -21,6 +21,10 @@ axes::sim::PlantConfig plant_of(const AxisBinding& binding) {
     plant.coulomb_friction = simulation.coulomb_friction;
     plant.load_torque = simulation.load_torque * (scale < 0 ? -1.0 : 1.0);
     plant.rated_torque = simulation.rated_torque;
+    plant.breakaway_torque = simulation.breakaway_torque;
+    plant.elastic = simulation.elastic;
+    plant.cogging = simulation.cogging;
+    plant.gains = simulation.gains;
     plant.start = counts(simulation.start);
     // On an inverted axis the drive's negative end is the axis' positive one.
     const bool inverted = scale < 0;

@@ -354,6 +354,19 @@ TEST_F(DoorTest, AJogLetGoAndALostHolderAreLevelsAlthoughNobodyServes) {
     EXPECT_THAT(machine.releases, ElementsAre(0, 0));
 }
 
+TEST_F(DoorTest, AMeasurementIsHeldAsAJogIs) {
+    auto caller = call();
+    caller.say(R"({"id":1,"cmd":"measure","axis":"x","kind":"step","velocity":0,"press":true})"
+               "\n");
+    step(500ms);
+    caller.say(R"({"id":2,"cmd":"measure","axis":"x"})"
+               "\n");
+    step(700ms);  // the renewal keeps it held for a second more
+    caller.hang_up();
+    step();
+    EXPECT_THAT(machine.releases, ElementsAre(0));
+}
+
 TEST_F(DoorTest, WhoHoldsNothingReleasesNothing) {
     auto caller = call();
     caller.say(release);

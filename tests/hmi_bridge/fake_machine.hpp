@@ -56,6 +56,13 @@ public:
     [[nodiscard]] runtime::AlarmText describe(const AlarmFact&) const override {
         return {"axis x", "following_error", "The axis lags behind", "跟随误差过大", "It is blocked", "Free it", "the axis stops", "reset"};
     }
+    [[nodiscard]] const axes::AxisConfig* axis_config(std::uint16_t) const override { return &its_config; }
+    bool next_measure_sample(axes::MeasureSample& out) override {
+        if (samples.empty()) return false;
+        out = samples.front();
+        samples.pop_front();
+        return true;
+    }
     [[nodiscard]] Drive drive(std::uint16_t axis) override { return axis < drives.size() ? drives[axis] : Drive{}; }
     [[nodiscard]] runtime::MachineTimes times() const override { return its_times; }
     runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override {
@@ -84,6 +91,8 @@ public:
     std::deque<runtime::CommandAnswer> answers;
     runtime::Snapshot snapshot;
     runtime::MachineLayout its_layout;
+    axes::AxisConfig its_config{};  ///< of each axis
+    std::deque<axes::MeasureSample> samples{};
     std::vector<Drive> drives;  ///< by axis; those behind have none
     runtime::MachineTimes its_times;
     std::size_t inbox_size = 1000;

@@ -360,6 +360,35 @@ TEST_F(GatewayTest, AJogIsPressedAndRenewedByTheSameClient) {
     EXPECT_EQ(machine.submitted.size(), 2u);
 }
 
+TEST_F(GatewayTest, AMeasurementIsHeldAsAJogIsAndBindsItsAxis) {
+    auto measure = [&](bool press, ClientId who) {
+        auto r = request(CommandKind::measure, "x");
+        r.client = who;
+        r.press = press;
+        r.measure.kind = axes::MeasureKind::step;
+        r.measure.distance = 12;
+        r.valid_for = 250ms;
+        return r;
+    };
+    EXPECT_EQ(outcome(measure(false, client)).answer, Answer::stale) << "a renewal begins nothing";
+    EXPECT_TRUE(outcome(measure(true, client)).accepted());
+    EXPECT_TRUE(machine.submitted.back().flag);
+    EXPECT_EQ(machine.submitted.back().measure.distance, 12);
+    now += 50ms;
+    EXPECT_TRUE(outcome(measure(false, client)).accepted());
+    EXPECT_FALSE(machine.submitted.back().flag);
+    const auto other = gateway.open(Source::socket, "panel B", Rights::commissioning);
+    EXPECT_EQ(outcome(measure(true, other)).answer, Answer::no_control);
+    EXPECT_EQ(outcome(jog(20, true, other)).answer, Answer::no_control);
+    auto late = measure(true, client);
+    late.valid_for = 600ms;
+    EXPECT_EQ(outcome(late).answer, Answer::bad_value) << "it lives as short as a jog";
+    const auto wire = gateway.open(Source::lcm, "somebody", Rights::operating);
+    EXPECT_EQ(outcome(measure(true, wire)).answer, Answer::no_control) << "over LCM nobody lets go";
+    gateway.close(client);
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0));
+}
+
 TEST_F(GatewayTest, ARenewalWithoutAPressMovesNothing) {
     EXPECT_EQ(outcome(jog(20, false, client)).answer, Answer::stale);
     EXPECT_TRUE(machine.submitted.empty());

@@ -39,6 +39,7 @@ const groups: [string, string, RegExp][] = [
     ['drivemode', 'axes/port/names.cpp', /name\(DriveMode mode\)[^}]*\}/],
     ['dc', 'ecat/dc/cycle_servo.cpp', /name\(DcLock lock\)[^}]*\}/],
     ['ring', 'ecat/ring/ring_state.hpp', /name\(RingShape shape\)[^}]*\}/],
+    ['measure_doubt', 'axes/measuring/quality.hpp', /word\(Doubt doubt\)[^}]*\}/],
 ];
 for (const [group, file, where] of groups)
     test(`each word of ${file} is in the table as ${group}`, () => {

@@ -52,6 +52,12 @@ export class Link {
     on_change: () => void = () => undefined;
     on_closed: () => void = () => undefined;
 
+    /** Also told when the connection ends. */
+    on_lost(tell: () => void): void {
+        this.lost_.push(tell);
+    }
+
+    private readonly lost_: (() => void)[] = [];
     private readonly came_: number[] = [];
     private socket_: WebSocket | undefined;
     private next_id_ = 1;
@@ -73,6 +79,7 @@ export class Link {
             this.socket_ = undefined;
             for (const id of [...this.waiting_.keys()]) this.answer(id, lost);
             this.on_closed();
+            for (const tell of this.lost_) tell();
             this.on_change();
             setTimeout(() => this.open(), reconnect_after);
         };

@@ -116,6 +116,8 @@ export interface MachineState {
     alarms: Alarm[];
     events: CommandEvent[];
     forced?: ForcedPoint[];
+    /** The newest measurement; null: there was none. */
+    measure?: { run: number; axis: string; kind: string; running: boolean; end: string; elapsed_s: number; duration_s: number } | null;
 }
 
 export interface AxisLayout {

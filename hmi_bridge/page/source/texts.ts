@@ -5,6 +5,7 @@ import { axis } from './texts/axis';
 import { bus } from './texts/bus';
 import { frame } from './texts/frame';
 import { io } from './texts/io';
+import { measure } from './texts/measure';
 import { programs } from './texts/programs';
 import { scope } from './texts/scope';
 import { system } from './texts/system';
@@ -18,6 +19,7 @@ export const rooms = {
     bus,
     frame,
     io,
+    measure,
     programs,
     scope,
     system,

@@ -6,6 +6,7 @@ import { element, mark } from '../view';
 /** The parts of an axis, a line each: where they stand and what they are called. */
 const parts: readonly { name: string; title: Key; where(axis: string): string }[] = [
     { name: 'hand', title: 'axis_hand', where: (axis) => `axis/${axis}` },
+    { name: 'measure', title: 'axis_measure', where: (axis) => `measure/${axis}` },
     { name: 'drive', title: 'axis_drive', where: (axis) => `axis/${axis}/drive` },
 ];
 

@@ -5,6 +5,7 @@ import { alarms } from './alarms';
 import { axis_page } from './axis';
 import { bus } from './bus';
 import { io } from './io';
+import { measure } from './measure';
 import { overview } from './overview';
 import { programs } from './programs';
 import { scope } from './scope';
@@ -27,6 +28,7 @@ export interface Entry {
 export const pages: readonly Entry[] = [
     { name: 'overview', title: 'overview', make: overview },
     { name: 'axis', title: 'axis', make: axis_page },
+    { name: 'measure', title: 'axis_measure', make: measure, under: 'axis' },
     { name: 'scope', title: 'scope', make: scope, alone: true },
     { name: 'alarms', title: 'alarms', make: alarms },
     { name: 'io', title: 'io', make: io },
