@@ -145,7 +145,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         trigger.status.hidden = session.trigger === undefined;
         if (side === 'signals') picker.update();
         if (side === 'files') files.update(now);
-        if (session.setup.view === 'time') table.update(now, (cycle) => stack.time_of(cycle), (a, b) => hertz(rate_between(a, b)));
+        if (session.setup.view === 'time') table.update(now, stack.hands.pointed, (cycle) => stack.time_of(cycle), (a, b) => hertz(rate_between(a, b)));
     }
     async function beat(): Promise<void> {
         if (left) return;
