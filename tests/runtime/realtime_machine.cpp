@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "fb_library/all_blocks.hpp"
+#include "runtime/recording/row_cursor.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
@@ -92,7 +93,7 @@ TEST(Realtime, CycleTasksServiceAndOperatorRunBesideEachOther) {
     auto built = Machine::build(config, world.transport());
     ASSERT_EQ(built.index(), 0u) << std::get<1>(built)[0].text();
     auto& machine = *std::get<0>(built);
-    auto& trace = machine.enable_trace(4096);
+    RowCursor trace{machine.signals()};
     RealtimeRunner runner{machine, &world};
     ASSERT_TRUE(runner.start().ok());
 
@@ -105,10 +106,7 @@ TEST(Realtime, CycleTasksServiceAndOperatorRunBesideEachOther) {
     const auto served = runner.serve([&](Instant now) {
         if (machine.phase() != MachinePhase::running) return patience.lasts(true);
         if (up == Instant{}) up = now;
-        while (!trace.front().empty()) {
-            ++rows;
-            trace.release();
-        }
+        while (!trace.next().empty()) ++rows;
         while (machine.next_answer()) ++answers;
         if (const auto* s = machine.latest()) {
             ran = ran || (s->axes[0].set_velocity > 0 && s->tasks[1].releases > 0 && s->variables[1] > 0);

@@ -145,10 +145,21 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         trigger.status.hidden = session.trigger === undefined;
         if (side === 'signals') picker.update();
         if (side === 'files') files.update(now);
-        if (session.setup.view === 'time') table.update(now, (cycle) => stack.time_of(cycle), (a, b) => hertz(rate_between(a, b)));
+        if (session.setup.view === 'time') table.update(now, stack.hands.pointed, (cycle) => stack.time_of(cycle), (a, b) => hertz(rate_between(a, b)));
+    }
+    let wanted = rest[0] === 'recording' && session.scene?.title !== rest[1] ? rest[1] : undefined;
+    /** The recording of the address, as soon as there is a machine to ask. */
+    function open_wanted(name: string): void {
+        wanted = undefined;
+        void session.show_recording(name).then((refused) => {
+            if (refused?.error?.code === 'page.no_recording') desk.tell('refused', say('scope_recording_gone', { name }));
+            else if (refused) desk.refused(refused);
+            else if (!left) changed();
+        });
     }
     async function beat(): Promise<void> {
         if (left) return;
+        if (wanted !== undefined && desk.link.opened && desk.link.layout) open_wanted(wanted);
         await session.step(performance.now());
         if (left || !root.isConnected) return;
         draw();
@@ -157,14 +168,6 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     fill_side();
     const timer = setInterval(() => void beat(), 33);
     if (rest[0] === 'axis' && rest[1] !== undefined) session.show_axis(rest[1]);
-    if (rest[0] === 'recording' && rest[1] !== undefined && session.scene?.title !== rest[1]) {
-        const name = rest[1];
-        void session.show_recording(name).then((refused) => {
-            if (refused?.error?.code === 'page.no_recording') desk.tell('refused', say('scope_recording_gone', { name }));
-            else if (refused) desk.refused(refused);
-            else if (!left) changed();
-        });
-    }
     return {
         root,
         update,

@@ -9,6 +9,7 @@ export class Hands {
     readonly lines = { a: this.cursor_line('a'), b: this.cursor_line('b') };
     /** A drag draws a box to zoom into, instead of moving the time. */
     box_zoom = false;
+    private pointed_x_: number | undefined;
     private readonly select_ = element('div', { class: 'scope-select', hidden: true });
     /** Views to come back to. */
     private readonly past_: { from: number; to: number; follow: boolean }[] = [];
@@ -17,6 +18,10 @@ export class Hands {
     constructor(private readonly session_: Session, private readonly width_: () => number, private readonly changed_: () => void) {
         this.surface.append(this.select_, this.lines.a, this.lines.b);
         this.listen();
+    }
+    /** The cycle under the mouse. */
+    get pointed(): number | undefined {
+        return this.pointed_x_ === undefined ? undefined : this.cycle_at(this.pointed_x_);
     }
     /** Another scene: what was seen of the other one is no place to come back to. */
     forget(): void {
@@ -103,6 +108,7 @@ export class Hands {
             if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.move(((event.deltaX || event.deltaY) / 100) * 0.1);
             else this.zoom(1.25 ** (event.deltaY / 100), this.part(event.clientX));
         }, { passive: false });
+        surface.addEventListener('pointerleave', () => (this.pointed_x_ = undefined));
         const fingers = new Map<number, number>();
         let start: { x: number; from: number; to: number; box: boolean } | undefined;
         surface.addEventListener('pointerdown', (event) => {
@@ -120,6 +126,7 @@ export class Hands {
         });
         surface.addEventListener('pointermove', (event) => {
             const view = this.view, before = fingers.get(event.pointerId);
+            this.pointed_x_ = event.pointerType === 'mouse' && before === undefined ? event.clientX : undefined;
             if (before === undefined || !view) return;
             if (fingers.size === 2) {  // pinch
                 const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1] ?? 0;

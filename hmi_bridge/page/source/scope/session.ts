@@ -189,25 +189,32 @@ export class Session {
     }
     /** Undefined: it is shown; else what was refused. */
     async show_recording(name: string): Promise<Answer | undefined> {
-        const list = await this.recordings();
-        if (!list.ok) return list;
-        const about = (list['recordings'] as Recording[]).find((recording) => recording.name === name);
+        let about: Recording | undefined;
+        for (let again = 0; again < 20; again++) {  // an alarm that has just come is still being recorded for some seconds
+            const list = await this.recordings();
+            if (!list.ok) return list;
+            about = (list['recordings'] as Recording[]).find((recording) => recording.name === name);
+            if (!about || about.complete) break;
+            await new Promise((resolve) => setTimeout(resolve, 500));
+        }
+        if (!about) return { ok: false, error: { code: 'page.no_recording', what: name } };
+        const kept = about;
         const answer = await this.link_.request({ cmd: 'recording_signals', recording: name });
-        if (!answer.ok || !about) return answer.ok ? { ok: false, error: { code: 'page.no_recording', what: name } } : answer;
+        if (!answer.ok) return answer;
         const scope = answer['scope'] as Record<string, unknown>;
-        const cycle_ns = Number(scope['cycle_ns']), store = new Store(Math.max(1, about.to - about.from));
+        const cycle_ns = Number(scope['cycle_ns']), store = new Store(Math.max(1, kept.to - kept.from));
         const reader = new Reader((request) => this.link_.request(request), name, store, cycle_ns);
         const view = new View(cycle_ns);
         view.follow = false;
-        view.show(about.from, about.to);
+        view.show(kept.from, kept.to);
         let failed_at = -1e9;
-        this.enter({ kind: 'recording', title: name, cycle_ns, signals: described(scope), store, view, marker: { cycle: about.alarm_cycle, kind: 'alarm', text: about.alarm },
+        this.enter({ kind: 'recording', title: name, cycle_ns, signals: described(scope), store, view, marker: { cycle: kept.alarm_cycle, kind: 'alarm', text: kept.alarm },
             seconds: (cycle) => seconds_of(store, reader, cycle_ns, cycle),
             fetch: async (names) => {
                 if (performance.now() - failed_at < again_after) return false;
-                if (!(await load(reader, with_time(names, this.scene?.signals ?? new Map()), about.from, about.to))) failed_at = performance.now();
+                if (!(await load(reader, with_time(names, this.scene?.signals ?? new Map()), kept.from, kept.to))) failed_at = performance.now();
                 return false;
-            } }, about.source);
+            } }, kept.source);
         return undefined;
     }
     private enter(scene: Scene, source = ''): void {

@@ -46,6 +46,7 @@ export class Stack {
     readonly hands: Hands;
     private readonly lanes_ = element('div', { class: 'scope-lanes' });
     private readonly marker_ = element('div', { class: 'scope-marker', hidden: true }, element('span'));
+    private readonly pointed_ = element('div', { class: 'scope-pointed', hidden: true }, element('span'));
     private readonly scroll_ = element('div', { class: 'scope-scroll-lanes' });
     private readonly time_ = element('div', { class: 'scope-time' });
     private time_chart_: LaneChart | undefined;
@@ -59,7 +60,7 @@ export class Stack {
             this.changed_();
             this.draw();
         });
-        this.hands.surface.append(this.marker_);
+        this.hands.surface.append(this.marker_, this.pointed_);
         this.scroll_.append(this.lanes_, this.hands.surface);
         this.root.append(this.scroll_, this.time_);
         this.listen();
@@ -142,6 +143,9 @@ export class Stack {
             }
             this.time_chart_?.draw(shot);
         }
+        const { pointed } = this.hands;
+        this.place(this.pointed_, pointed);
+        if (pointed !== undefined) write(this.pointed_.firstElementChild as Element, this.time_of(pointed));
         this.place(this.marker_, scene.marker?.cycle);
         if (scene.marker) {
             mark(this.marker_, 'data-kind', scene.marker.kind);

@@ -57,16 +57,18 @@ export class ValueTable {
         this.root = element('section', { class: 'scope-values' }, fold, this.between_, scroll);
     }
 
-    update(now: number, time_of: (cycle: number) => string, rate: (a: number, b: number) => string): void {
+    update(now: number, pointed: number | undefined, time_of: (cycle: number) => string, rate: (a: number, b: number) => string): void {
         const { scene, cursors, setup } = this.session_;
         this.rows_.update(setup.channels);
         this.head_.forEach((head, i) => (head.hidden = i >= 3 && i <= 6 && cursors.shown === (i === 3)));
         if (!scene) return;
         const view = scene.view, range = measured(cursors, view.from, view.to);
-        const newest = Math.min(scene.store.newest - 1, view.follow ? Infinity : Math.floor(view.to));
+        // Under the mouse, else at the right edge.
+        const newest = pointed ?? Math.min(scene.store.newest - 1, view.follow ? Infinity : Math.floor(view.to));
         const samples = (range.to - range.from) * setup.channels.length;
         const state = JSON.stringify([cursors, range, newest, setup.channels]);
-        if (state === this.last_ || now - this.computed_at_ < (samples > many_samples ? 1000 : 250)) return;
+        if (state === this.last_ || now - this.computed_at_ < (samples > many_samples ? 1000 : pointed === undefined ? 250 : 80)) return;
+        write(this.head_[3] as Element, say(pointed === undefined ? 'scope_newest' : 'scope_pointed'));
         this.last_ = state;
         this.computed_at_ = now;
         write(this.between_, cursors.shown

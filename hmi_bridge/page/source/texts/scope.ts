@@ -31,6 +31,7 @@ export const scope = {
     // the list
     scope_curve: ['Curve', '曲线'],
     scope_newest: ['Value', '当前值'],
+    scope_pointed: ['At the mouse', '鼠标处'],
     scope_at_a: ['At A', 'A 处'],
     scope_at_b: ['At B', 'B 处'],
     scope_difference: ['B − A', 'B − A 差值'],
