@@ -41,7 +41,7 @@ for (const [theme, colours] of [['light', light], ['dark', dark]] as const) {
     test(`letters on every ground, ${theme}`, () => {
         for (const letter of ['text', 'quiet', 'good', 'warn', 'bad', 'idle', 'accent'])
             for (const ground of grounds) assert.ok(contrast(at(letter), at(ground)) >= 4.5, `${letter} on ${ground}: ${contrast(at(letter), at(ground)).toFixed(2)}`);
-        for (const [letter, ground] of [['on-accent', 'accent'], ['on-mark', 'mark'], ['on-stop', 'stop'], ['good', 'good-ground'], ['warn', 'warn-ground'], ['bad', 'bad-ground'], ['text', 'warn-ground'], ['text', 'bad-ground'], ['quiet', 'warn-ground']] as const)
+        for (const [letter, ground] of [['on-accent', 'accent'], ['on-mark', 'mark'], ['on-mark', 'force'], ['on-stop', 'stop'], ['good', 'good-ground'], ['warn', 'warn-ground'], ['bad', 'bad-ground'], ['text', 'warn-ground'], ['text', 'bad-ground'], ['quiet', 'warn-ground']] as const)
             assert.ok(contrast(at(letter), at(ground)) >= 4.5, `${letter} on ${ground}: ${contrast(at(letter), at(ground)).toFixed(2)}`);
     });
     test(`what only draws, ${theme}`, () => {

@@ -19,7 +19,12 @@ for (const taste of tastes)
     for (const place of places)
         test(`${place}, ${taste.language}, ${taste.theme}`, { timeout: 60_000 }, async () => {
             await cell.look(`#${place}`, taste);
-            await pause(400);
+            await pause(800);
+            if (place === 'io' && (await cell.page.locator('[data-do="forcing"]').isEnabled())) {
+                await cell.page.locator('[data-do="forcing"]').check();
+                await cell.page.locator('[data-input-point="part_present"] [data-set="0"]').click();
+                await pause(300);
+            }
             const seen = await cell.page.evaluate(() => {
                 const main = document.querySelector('main') as HTMLElement;
                 const visible = (element: HTMLElement): boolean => element.getClientRects().length > 0;

@@ -31,6 +31,7 @@ try {
     await take('axis-zh', 'axis/x', { theme: 'dark', language: 'zh' });
     await take('drive', 'axis/x/drive', {}, async () => {
         await cell.page.locator('[data-input="filter"]').fill('P05');
+        await cell.page.locator('[data-input="compare"]').selectOption('compare_factory');
         await pause(600);
         if (await cell.page.locator('[data-do="read_all"]').isEnabled()) await cell.page.locator('[data-do="read_all"]').click();
         await pause(2500);

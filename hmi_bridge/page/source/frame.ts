@@ -1,6 +1,6 @@
 // What stands around every page: the head line with STOP, the banners that no page may hide, the tabs.
 import { Account } from './account';
-import { in_words, stops } from './alarm_words';
+import { in_words, stops, where } from './alarm_words';
 import { Desk } from './desk';
 import { duration } from './numbers';
 import { Entry, pages } from './pages/list';
@@ -107,7 +107,7 @@ export class Frame {
             strip.hidden = !first;
             if (first) {
                 mark(strip, 'data-tone', stops(first) ? 'bad' : 'warn');
-                write(strip_text, `⚠ ${first.source}: ${in_words(first)}`);
+                write(strip_text, `⚠ ${where(first.source)}: ${in_words(first)}`);
                 write(strip_more, standing.length > 1 ? say('more_alarms', { count: String(standing.length) }) : '');
             }
         };

@@ -31,7 +31,7 @@ export function drive_page(desk: Desk, layout: AxisLayout): Page {
         status.set('drive_mode', word('drivemode', axis.drive_mode));
         status.set('status_word', hex(axis.status_word));
         status.set('drive_error', axis.drive_error === 0 ? say('none_of_these') : hex(axis.drive_error));
-        if (axis.brake && axis.brake !== 'none') status.set('brake', word('brake', axis.brake));
+        if (axis.brake && axis.brake !== 'not_controlled') status.set('brake', word('brake', axis.brake));
         status_bits.forEach(([bit, key], i) => {
             const item = bits[i];
             if (!item) return;

@@ -32,7 +32,8 @@ export interface DriveParameter {
 /** More are not shown at once: a filter is there. */
 const most_shown = 200;
 
-export const range_text = ({ minimum, maximum }: DriveParameter): string => (minimum === null && maximum === null ? '' : `${minimum === null ? '' : plain(minimum)} … ${maximum === null ? '' : plain(maximum)}`);
+export const range_text = ({ minimum, maximum }: DriveParameter): string =>
+    minimum === null ? (maximum === null ? '' : `≤ ${plain(maximum)}`) : maximum === null ? `≥ ${plain(minimum)}` : `${plain(minimum)} … ${plain(maximum)}`;
 const factory_text = (parameter: DriveParameter): string => (parameter.factory_shown ? `${parameter.factory_shown}${parameter.factory_is === 'assumed' ? ` (${say('assumed')})` : ''}` : say('factory_unknown'));
 
 /** Whether two texts of a value say the same: "250 ms" and "250.0 ms". */
@@ -71,7 +72,7 @@ export class DriveParameters {
             const shown = element('td', { class: 'number', 'data-value': 'value' }), other = element('td', { class: 'number' });
             const read = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_read', 'aria-label': `${say('read')} ${parameter.id}`, onclick: () => void this.read(parameter.id) }, say('read'));
             const change = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_write', 'aria-label': `${say('change')} ${parameter.id}`, onclick: () => this.ask(parameter) }, say('change'));
-            const root = element('tr', { 'data-parameter': parameter.id }, element('th', { scope: 'row' }, parameter.id, element('small', { class: 'doc' }, this.title(parameter))), shown, other,
+            const root = element('tr', { 'data-parameter': parameter.id }, element('th', { scope: 'row' }, parameter.id, element('small', { class: 'doc', lang: current_language() }, this.title(parameter))), shown, other,
                 element('td', { class: 'range' }, range_text(parameter), element('small', { class: 'doc' }, word('effective', parameter.effective))), element('td', { class: 'buttons' }, ...(parameter.readable ? [read] : []), ...(parameter.writable ? [change] : [])));
             return { root, shown, other, change, read };
         }, (row, parameter) => {
@@ -85,7 +86,7 @@ export class DriveParameters {
         });
         this.file_.addEventListener('change', () => void this.load());
         this.root = panel('drive_parameters', element('div', { class: 'bar' }, this.filter_, this.read_all_, this.against_, element('label', { class: 'switch' }, this.different_, element('span', {}, say('only_different'))),
-            element('span', { class: 'space' }), this.save_, this.load_, this.file_), this.said_, element('div', { class: 'scroll tall' }, element('table', { class: 'dense parameters' }, this.body_)), this.dialog_);
+            element('span', { class: 'space' }), this.save_, this.load_, this.file_), this.said_, element('div', { class: 'scroll tall' }, element('table', { class: 'dense parameters' }, element('thead', {}, element('tr', {}, ...(['name', 'value', 'compared', 'parameter_range'] as const).map((key, i) => element('th', { scope: 'col', class: i === 1 || i === 2 ? 'number' : '' }, say(key))), element('th', {}))), this.body_)), this.dialog_);
     }
     update(axis: AxisState): void {
         this.inquiry_.step();

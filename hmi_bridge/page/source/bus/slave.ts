@@ -11,7 +11,7 @@ export class SlaveDetails {
     private readonly body_ = element('tbody');
     private readonly said_ = element('p', { class: 'hint', lang: 'en' });
     private readonly ports_ = new Rows(this.body_, (port: Port & { number: number }) => String(port.number), (port) => {
-        const cells = [0, 1, 2, 3, 4].map((i) => element('td', { class: i === 0 ? '' : 'number' }));
+        const cells = [0, 1, 2, 3, 4].map((i) => element('td', i === 0 ? { lang: 'en' } : { class: 'number' }));
         return { root: element('tr', {}, element('th', { scope: 'row' }, String(port.number)), ...cells), cells };
     }, (row, port) => {
         [port.link ? `● ${port.at_other_end || say('link')}` : `○ ${say('no_link')}`, port.lost_links, port.rx_errors, port.invalid_frames, port.forwarded_errors].forEach((text, i) => {
@@ -35,7 +35,7 @@ export class SlaveDetails {
         this.values_.set('serial', String(slave.serial));
         if (slave.dc !== undefined) {
             this.values_.set('dc_delay', slave.dc ? `${microseconds(slave.dc_delay_ns ?? 0)} µs` : '–');
-            this.values_.set('dc_difference', !slave.dc ? say('no_clock') : slave.reference_clock ? say('reference_clock') : `${slave.dc_difference_ns ?? 0} ns`);
+            this.values_.set('dc_of_slave', !slave.dc ? say('no_clock') : slave.reference_clock ? say('reference_clock') : `${slave.dc_difference_ns ?? 0} ns`);
         }
         this.ports_.update((slave.ports ?? []).map((port, number) => ({ ...port, number })));
     }

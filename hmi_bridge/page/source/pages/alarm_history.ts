@@ -1,4 +1,5 @@
 // What stood before, also before a restart: filtered by the machine, newest first; one click opens what was recorded around it.
+import { where } from '../alarm_words';
 import { Desk, Page } from '../desk';
 import { Inquiry } from '../inquiry';
 import { Request } from '../link';
@@ -71,7 +72,7 @@ export function alarm_history(desk: Desk): Page {
         }
         show();
         save_file(`${desk.link.machine}-alarms-${file_time()}.csv`, 'text/csv', csv([(['since', 'until', 'source', 'text', 'name', 'reaction', 'cause', 'remedy', 'manual', 'recording'] as const).map((key) => say(key)),
-            ...listed.map((alarm) => [local_time(alarm.utime), alarm.cleared_utime ? local_time(alarm.cleared_utime) : '', alarm.source, in_language(alarm), alarm.name, word('reaction', alarm.reaction), alarm.cause, alarm.remedy, alarm.manual, alarm.recording])]));
+            ...listed.map((alarm) => [local_time(alarm.utime), alarm.cleared_utime ? local_time(alarm.cleared_utime) : '', where(alarm.source), in_language(alarm), alarm.name, word('reaction', alarm.reaction), alarm.cause, alarm.remedy, alarm.manual, alarm.recording])]));
     };
 
     const body = element('tbody');
@@ -80,7 +81,7 @@ export function alarm_history(desk: Desk): Page {
         const details = element('details', {}, element('summary', {}, in_language(alarm)), element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause || '–'),
             element('dt', {}, say('remedy')), element('dd', { lang: 'en' }, alarm.remedy || '–'), ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : []),
             element('dt', {}, say('reaction')), element('dd', {}, word('reaction', alarm.reaction), ' · ', element('span', { lang: 'en' }, alarm.name))));
-        const root = element('tr', { 'data-past-alarm': alarm.name }, element('td', { class: 'number' }, local_time(alarm.utime)), lasted, element('th', { scope: 'row' }, alarm.source), element('td', {}, details),
+        const root = element('tr', { 'data-past-alarm': alarm.name }, element('td', { class: 'number' }, local_time(alarm.utime)), lasted, element('th', { scope: 'row' }, where(alarm.source)), element('td', {}, details),
             element('td', {}, recording_link(alarm.recording)));
         return { root, lasted };
     }, (row, alarm) => {

@@ -1,5 +1,5 @@
 // What stands, in words, with cause and remedy; and what the machine refused.
-import { in_words, key_of, stops } from '../alarm_words';
+import { in_words, key_of, stops, where } from '../alarm_words';
 import { Desk, Page, panel, sub_tabs } from '../desk';
 import { duration } from '../numbers';
 import { CommandEvent, MachineState } from '../state';
@@ -26,7 +26,7 @@ function standing_alarms(desk: Desk): Page {
     const rows = new Rows(list, key_of, (alarm) => {
         const status = element('span', { class: 'alarm-status' }), since = element('span', { class: 'alarm-since' }), recorded = element('p', { class: 'recorded' });
         const root = element('article', { class: 'alarm', 'data-alarm': alarm.name },
-            element('header', {}, status, element('strong', {}, alarm.source), since),
+            element('header', {}, status, element('strong', {}, where(alarm.source)), since),
             element('p', { class: 'alarm-text' }, in_words(alarm)),
             element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause), element('dt', {}, say('remedy')),
                 element('dd', { lang: 'en' }, alarm.remedy), element('dt', {}, say('how_to_reset')), element('dd', { lang: 'en' }, alarm.reset),

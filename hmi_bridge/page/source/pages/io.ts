@@ -39,7 +39,7 @@ function point_rows(desk: Desk, direction: Direction, forcing: () => boolean, lo
     const body = element('tbody');
     const rows = new Rows(body, (point: Point) => `${point.name}/${point.unit}`, (point) => {
         const { name, unit } = point;
-        const shown = element('td', { 'data-value': 'value', class: unit ? 'number' : '' }), badge = element('span', { class: 'badge', hidden: true });
+        const shown = element('td', { 'data-value': 'value', class: unit ? 'number' : '' }), badge = element('span', { class: 'badge', hidden: true }, say('forced')), by = element('small', { lang: 'en' });
         const given = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': `${name} ${say('value')}`, placeholder: unit, 'data-input': 'point' });
         const send = (value: number): void => {
             if (forcing()) void desk.give({ cmd: 'force', [direction]: name, value });
@@ -54,13 +54,13 @@ function point_rows(desk: Desk, direction: Direction, forcing: () => boolean, lo
             : ([1, 0] as const).map((to) => element('button', { type: 'button', 'data-set': String(to), 'aria-label': `${name} ${say(to ? 'on' : 'off')}`, onclick: () => send(to) }, say(to ? 'on' : 'off')));
         const release = element('button', { type: 'button', 'data-do': 'release', 'aria-label': `${name} ${say('release')}`, onclick: () => void desk.give({ cmd: 'unforce', [direction]: name }) }, say('release'));
         const hand = element('td', { class: 'buttons' }, ...(unit ? [given] : []), ...buttons, release);
-        const root = element('tr', { [`data-${direction}-point`]: name }, element('th', { scope: 'row' }, name, badge), shown, hand);
-        return { root, shown, badge, given, buttons, release };
+        const root = element('tr', { [`data-${direction}-point`]: name }, element('th', { scope: 'row' }, name, badge, by), shown, hand);
+        return { root, shown, badge, by, given, buttons, release };
     }, (row, point) => {
         const force = forcing();
         write_point(row.shown, point);
         row.badge.hidden = !point.forced;
-        if (point.forced) write(row.badge, say('forced_by', { by: point.forced.by }));
+        write(row.by, point.forced?.by ?? '');
         mark(row.root, 'data-forced', point.forced !== undefined);
         const kept = (direction === 'input' ? desk.link.layout?.kept_inputs : desk.link.layout?.kept_outputs)?.[point.name] ?? '';
         const settable = force || direction === 'output';

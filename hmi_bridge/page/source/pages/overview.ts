@@ -1,5 +1,5 @@
 // All axes at a glance, a row each; programs; whether the cycle keeps time.
-import { in_words, key_of, stops } from '../alarm_words';
+import { in_words, key_of, stops, where } from '../alarm_words';
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
 import { fixed, microseconds } from '../numbers';
 import { Alarm, AxisLayout, AxisState, MachineState, value } from '../state';
@@ -95,7 +95,7 @@ function standing_list() {
     const list = element('div', { class: 'standing' });
     const rows = new Rows(list, key_of, (alarm: Alarm) => {
         const tone = stops(alarm) ? 'bad' : 'warn';
-        return { root: element('a', { class: 'standing-alarm', href: '#alarms', 'data-tone': tone }, element('strong', {}, `⚠ ${alarm.source}: ${in_words(alarm)}`), element('span', { lang: 'en' }, alarm.remedy)) };
+        return { root: element('a', { class: 'standing-alarm', href: '#alarms', 'data-tone': tone }, element('strong', {}, `⚠ ${where(alarm.source)}: ${in_words(alarm)}`), element('span', { lang: 'en' }, alarm.remedy)) };
     }, () => undefined);
     return {
         root: list,

@@ -1,4 +1,5 @@
 // What runs here, since when, how far away it is; what this page has commanded; what was recorded; whose work is used.
+import { where } from '../alarm_words';
 import { Desk, Given, Page, panel, table, Values } from '../desk';
 import { Inquiry } from '../inquiry';
 import { Licence, page_licences } from '../licences';
@@ -25,7 +26,7 @@ function recordings(desk: Desk) {
     const body = element('tbody'), none = element('p', { class: 'hint' });
     const rows = new Rows(body, (recorded: Recorded) => recorded.name, (recorded) => {
         const size = element('td', { class: 'number' });
-        return { root: element('tr', { 'data-recorded': recorded.name }, element('td', { class: 'number' }, local_time(recorded.utime)), element('td', {}, recorded.source), element('td', { lang: 'en' }, recorded.alarm), size,
+        return { root: element('tr', { 'data-recorded': recorded.name }, element('td', { class: 'number' }, local_time(recorded.utime)), element('td', {}, where(recorded.source)), element('td', { lang: 'en' }, recorded.alarm), size,
             element('td', {}, element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(recorded.name)}` }, say('open_recording')))), size };
     }, (row, recorded) => write(row.size, recorded.complete ? `${(recorded.bytes / 1024).toFixed(0)} kB` : say('being_recorded')));
     const inquiry = new Inquiry(desk, () => ({ cmd: 'recordings' }), recordings_ms, (answer) => {
@@ -97,15 +98,16 @@ export function system(desk: Desk): Page {
         return { cmd: 'hello' };
     }, latency_ms, (answer) => {
         if (!answer.ok) return;
-        uptime = Number(answer['uptime_s'] ?? NaN);
-        const libraries = answer['libraries'] as { name: string; version: string; licence: string }[] | undefined;
+        const hello = (answer['hello'] ?? {}) as { uptime_s?: number; libraries?: { name: string; version: string; licence: string }[] };
+        uptime = hello.uptime_s ?? NaN;
+        const libraries = hello.libraries;
         if (libraries) licence_rows.update([...libraries.map((library): Licence => ({ name: library.name, version: library.version, licence: library.licence, used: 'licence_command' })), ...page_licences]);
         latency = performance.now() - asked;
         worst = Math.max(worst, latency);
     });
     const licence_body = element('tbody');
     const licence_rows = new Rows(licence_body, (of: Licence) => of.name, ({ name, version, licence, used }) =>
-        ({ root: element('tr', {}, element('th', { scope: 'row' }, name), element('td', {}, version), element('td', {}, licence), element('td', { class: 'doc' }, say(used))) }), () => undefined);
+        ({ root: element('tr', {}, element('th', { scope: 'row', lang: 'en' }, name), element('td', {}, version), element('td', {}, licence), element('td', { class: 'doc' }, say(used))) }), () => undefined);
     licence_rows.update(page_licences);
     return {
         root: element('div', { class: 'page system' },

@@ -8,7 +8,7 @@ export const io = {
     off: ['off', '断'],
     forcing: ['Force', '强制'],
     forcing_hint: ['A forced point keeps its value against program and terminal, until it is released or this page closes.', '被强制的点保持其值,不受程序和端子影响,直到解除或关闭本页面。'],
-    forced_by: ['FORCED by {by}', '由 {by} 强制'],
+    forced: ['FORCED', '已强制'],
     release: ['Release', '解除'],
     not_forced: ['It is not forced.', '该点未被强制。'],
     kept_point: ['Nobody may force it: {why}', '不可强制:{why}'],
