@@ -37,6 +37,8 @@ export interface CellOptions {
     machine?: (yaml: string) => string;
     /** Of `taktwerk hmi`. */
     role?: string;
+    /** The file of users: people log in. */
+    users?: string;
 }
 
 export interface Taste {
@@ -61,16 +63,19 @@ export class Cell {
     /** Messages of the page to the server, as they left the page. */
     sent: Json[] = [];
     readonly folder = mkdtempSync(join(tmpdir(), 'hmi-page-'));
+    readonly command = command;
     readonly socket = join(this.folder, 'demo.sock');
     private readonly children_: ChildProcess[] = [];
     private server_: ChildProcess | undefined;
     private role_ = 'engineer';
+    private users_ = '';
 
     async start(options: CellOptions = {}): Promise<void> {
         const demo = readFileSync(join(source, 'config/machines/demo.yaml'), 'utf8');
         const file = join(this.folder, 'demo.yaml');
         writeFileSync(file, (options.machine ?? quiet)(demo).replace(/^hmi:$/m, `hmi:\n  socket: ${this.socket}`));
         this.role_ = options.role ?? this.role_;
+        this.users_ = options.users ?? '';
         const runtime = this.child([command, 'run', file], source);
         await until('the machine runs', async () => {
             if (runtime.process.exitCode !== null) throw new Error(`taktwerk run ended:\n${runtime.said()}`);
@@ -93,7 +98,7 @@ export class Cell {
     }
     /** The server, or a new one at the same place. It listens beside the browser's address: the line goes between. */
     async serve(): Promise<void> {
-        const server = this.child([command, 'hmi', '--listen', `127.0.0.2:${this.port}`, '--socket', this.socket, '--role', this.role_,
+        const server = this.child([command, 'hmi', '--listen', `127.0.0.2:${this.port}`, '--socket', this.socket, ...(this.users_ ? ['--users', this.users_] : ['--role', this.role_]),
             '--page', join(build, 'hmi_page/page'), '--audit', join(this.folder, 'audit')], this.folder);
         this.server_ = server.process;
         await until('the server listens', () => {
@@ -145,11 +150,11 @@ export class Cell {
             for (const [key, text] of Object.entries(kept)) if (localStorage.getItem(key) === null) localStorage.setItem(key, text);
         }, { theme: taste.theme ?? 'light', language: taste.language ?? 'en' });
         const page = await context.newPage();
-        page.on('console', (message) => message.type() === 'error' && !message.text().includes('WebSocket') && this.complaints.push(message.text()));
+        page.on('console', (message) => message.type() === 'error' && !/WebSocket|status of 401/.test(message.text()) && this.complaints.push(message.text()));
         page.on('pageerror', (error) => this.complaints.push(String(error)));
         page.on('websocket', (socket) => socket.on('framesent', ({ payload }) => void sent.push(JSON.parse(String(payload)) as Json)));
         await page.goto(this.address + hash);
-        await page.locator('body:not([data-stale]) .page').waitFor({ timeout: patience });
+        await page.locator(this.users_ ? 'body main' : 'body:not([data-stale]) .page').waitFor({ timeout: patience });
         return page;
     }
     async axis(name: string): Promise<Axis> {

@@ -16,19 +16,26 @@ test('while one jogs another may look, not jog nor move; stop is everybody\'s', 
     await cell.look('#axis/x');
     const second = await cell.another('#axis/x');
     try {
-        await ready(cell.page, '[data-jog="+"]');
         const box = await cell.page.locator('[data-jog="+"]').boundingBox();
         assert.ok(box);
-        await cell.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-        await cell.page.mouse.down();
-        await until('x moves', async () => (await cell.axis('x')).set_velocity > 19);
-
-        await until('the other sees it', async () => (await second.locator('[data-value="big_position"]').textContent()) !== '' && /[▶]/.test((await second.locator('[data-value="state"]').textContent()) ?? ''));
-        await second.locator('[data-input="to"]').fill('10');
-        await second.locator('[data-cmd="move"]').click();
-        await refusal(second).waitFor({ timeout: 5000 });
-        assert.ok((await cell.axis('x')).set_velocity > 19, 'the first one was disturbed');
-
+        const jogs = async (): Promise<boolean> => (await cell.axis('x')).set_velocity > 19;
+        for (let left = 6; ; left--) {  // a page that stands still for 200 ms on a busy computer lets go: then nobody jogs who could be disturbed
+            await ready(cell.page, '[data-jog="+"]');
+            await cell.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+            await cell.page.mouse.down();
+            await until('x moves', jogs, 3000).catch(() => undefined);
+            if (await jogs()) {
+                await second.locator('[data-input="to"]').fill('1');
+                await second.locator('[data-cmd="move"]').click({ timeout: 2000 }).catch(() => undefined);
+                await refusal(second).waitFor({ timeout: 1500 }).catch(() => undefined);
+                if ((await refusal(second).count()) > 0 && (await jogs())) break;
+            }
+            await cell.page.mouse.up();
+            await cell.machine.ask({ cmd: 'stop', axis: 'x' });
+            await cell.stands('x', 3000);
+            assert.ok(left > 0, 'it was let go each time');
+        }
+        assert.match((await second.locator('[data-value="state"]').textContent()) ?? '', /▶/, 'the other does not see that it moves');
         await second.locator('[data-do="stop"]').dispatchEvent('pointerdown', { pointerId: 3 });
         await cell.stands('x', 2000);
         await cell.page.mouse.up();

@@ -13,8 +13,10 @@ import { alarm_tabs, recording_link } from './alarms';
 export interface PastAlarm {
     id: number;
     utime: number;
-    /** 0: it still stands. */
-    cleared_utime: number;
+    /** When its condition went; null: it has not, or nobody knows. */
+    cleared_utime: number | null;
+    /** `stands`, `waits` for a person, `gone`, `unknown`: the runtime ended meanwhile. */
+    state: string;
     name: string;
     source: string;
     english: string;
@@ -33,22 +35,27 @@ const periods: [Key, number][] = [['period_all', 0], ['period_hour', 3600], ['pe
 
 export const in_language = (alarm: PastAlarm): string => (current_language() === 'zh' && alarm.chinese ? alarm.chinese : alarm.english);
 
+/** Where an alarm may stand, as the machine says it. */
+const sources = ({ link: { layout } }: Desk): string[] => ['machine', 'bus', ...(layout?.axes ?? []).map((axis) => `axis ${axis.name}`), ...(layout?.slaves ?? []).map((slave) => `slave '${slave}'`),
+    ...(layout?.programs ?? []).map((program) => `program ${program}`)];
+
 export function alarm_history(desk: Desk): Page {
     let listed: PastAlarm[] = [];
-    let whole = false;
+    let whole = false, refusal = '';
     const text = element('input', { type: 'search', 'aria-label': say('filter'), placeholder: say('filter_text'), 'data-input': 'text' });
     const source = element('select', { 'aria-label': say('source'), 'data-input': 'source' }, element('option', { value: '' }, say('every_source')),
-        ...(desk.link.layout?.axes ?? []).map((axis) => element('option', { value: axis.name }, axis.name)), ...(desk.link.layout?.slaves ?? []).map((slave) => element('option', { value: slave }, slave)));
+        ...sources(desk).map((source) => element('option', { value: source }, where(source))));
     const period = element('select', { 'aria-label': say('period'), 'data-input': 'period' }, ...periods.map(([key, seconds]) => element('option', { value: String(seconds) }, say(key))));
     const question = (more: object = {}): Request => {
         const seconds = Number(period.value), wanted = text.value.trim();
         return { cmd: 'alarm_history', limit: page_size, ...(wanted ? { text: wanted } : {}), ...(source.value ? { source: source.value } : {}), ...(seconds ? { since_utime: (Date.now() - seconds * 1000) * 1000 } : {}), ...more };
     };
     const inquiry = new Inquiry(desk, question, refresh_ms, (answer) => {
-        if (!answer.ok) return;
+        refusal = answer.ok ? '' : `${answer.error?.what ?? ''} ${answer.error?.remedy ?? ''}`;
+        if (!answer.ok) return show();
         const newest = (answer['alarms'] as PastAlarm[] | undefined) ?? [];
         const oldest = newest.at(-1)?.id ?? 0;
-        if (listed.length <= page_size) whole = newest.length < page_size;
+        if (listed.length <= page_size) whole = answer['more'] !== true;
         listed = [...newest, ...listed.filter((alarm) => alarm.id < oldest && newest.length > 0)];
         show();
     });
@@ -57,20 +64,17 @@ export function alarm_history(desk: Desk): Page {
         inquiry.ask();
     };
     for (const field of [text, source, period]) field.addEventListener('input', anew);
-    const older = async (): Promise<PastAlarm[]> => {
+    const older = async (): Promise<void> => {
         const answer = await desk.link.request(question({ before: listed.at(-1)?.id }));
         if (!answer.ok) desk.refused(answer);
-        return (answer['alarms'] as PastAlarm[] | undefined) ?? [];
+        listed = [...listed, ...((answer['alarms'] as PastAlarm[] | undefined) ?? [])];
+        whole = answer['more'] !== true;
+        show();
     };
-    const more = element('button', { type: 'button', 'data-do': 'older', onclick: () => void older().then((found) => { listed = [...listed, ...found]; whole = found.length < page_size; show(); }) }, say('older_alarms'));
+    const more = element('button', { type: 'button', 'data-do': 'older', onclick: () => void older() }, say('older_alarms'));
     const save = element('button', { type: 'button', 'data-do': 'export', onclick: () => void export_all() }, say('export_csv'));
     const export_all = async (): Promise<void> => {
-        for (let found = [...listed]; listed.length < most_exported && !whole && found.length > 0;) {
-            found = await older();
-            listed = [...listed, ...found];
-            whole = found.length < page_size;
-        }
-        show();
+        while (listed.length < most_exported && !whole && desk.link.opened) await older();
         save_file(`${desk.link.machine}-alarms-${file_time()}.csv`, 'text/csv', csv([(['since', 'until', 'source', 'text', 'name', 'reaction', 'cause', 'remedy', 'manual', 'recording'] as const).map((key) => say(key)),
             ...listed.map((alarm) => [local_time(alarm.utime), alarm.cleared_utime ? local_time(alarm.cleared_utime) : '', where(alarm.source), in_language(alarm), alarm.name, word('reaction', alarm.reaction), alarm.cause, alarm.remedy, alarm.manual, alarm.recording])]));
     };
@@ -85,13 +89,13 @@ export function alarm_history(desk: Desk): Page {
             element('td', {}, recording_link(alarm.recording)));
         return { root, lasted };
     }, (row, alarm) => {
-        write(row.lasted, alarm.cleared_utime ? duration((alarm.cleared_utime - alarm.utime) / 1e6) : `⚠ ${say('standing')}`);
-        mark(row.lasted, 'data-tone', alarm.cleared_utime ? false : 'bad');
+        write(row.lasted, alarm.cleared_utime !== null ? duration((alarm.cleared_utime - alarm.utime) / 1e6) : alarm.state === 'stands' ? `⚠ ${say('standing')}` : say('not_known_when'));
+        mark(row.lasted, 'data-tone', alarm.state === 'stands' ? 'bad' : false);
     });
     const none = element('p', { class: 'hint' });
     const show = (): void => {
         rows.update(listed);
-        write(none, inquiry.unknown ? say('not_known') : listed.length === 0 && inquiry.answer ? say('no_past_alarms') : '');
+        write(none, inquiry.unknown ? say('not_known') : refusal || (listed.length === 0 && inquiry.answer ? say('no_past_alarms') : ''));
         more.hidden = whole || listed.length === 0;
         save.disabled = listed.length === 0;
     };

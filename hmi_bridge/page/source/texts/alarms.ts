@@ -44,6 +44,7 @@ export const alarms = {
     export_csv: ['Save as CSV', '导出 CSV'],
     until: ['Until', '结束时间'],
     lasted: ['Lasted', '持续时间'],
+    not_known_when: ['unknown', '未知'],
     no_past_alarms: ['No alarm fits.', '没有符合条件的报警。'],
     refusals: ['Refused or ended commands', '被拒绝或中止的命令'],
     no_refusals: ['No command was refused.', '没有被拒绝的命令。'],

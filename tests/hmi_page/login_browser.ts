@@ -1,0 +1,78 @@
+// People with names: who logs in sees the machine and is known by name and role, who logs out sees it no more, also in another window of that browser.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Cell, quiet, until } from './cell';
+
+const cell = new Cell();
+const users = join(cell.folder, 'users.json');
+const add = (name: string, role: string, password: string): void => {
+    const made = spawnSync(cell.command, ['hmi', 'user', 'add', name, role, '--users', users], { input: password + '\n', encoding: 'utf8' });
+    assert.equal(made.status, 0, made.stderr);
+};
+before(async () => {
+    add('anna', 'operator', 'a long horse battery');
+    add('otto', 'viewer', 'another staple here');
+    await cell.start({ machine: quiet, users });
+}, { timeout: 120_000 });
+after(() => cell.end());
+
+const account = () => cell.page.locator('[data-do="account"]');
+async function log_in(user: string, password: string): Promise<void> {
+    await cell.page.locator('dialog[open] [data-input="user"]').fill(user);
+    await cell.page.locator('dialog[open] [data-input="password"]').fill(password);
+    await cell.page.locator('dialog[open] [data-do="log_in"]').click();
+}
+
+test('nothing of the machine is seen before somebody has logged in; a wrong password says no more than that', { timeout: 60_000 }, async () => {
+    await cell.page.locator('dialog[open] [data-input="user"]').waitFor({ timeout: 10_000 });
+    assert.match((await cell.page.locator('.stale').textContent()) ?? '', /Log in/);
+    assert.equal(await cell.page.locator('main .page').count(), 0);
+    for (const user of ['anna', 'nobody']) {
+        await log_in(user, 'wrong');
+        await until(`${user} is refused`, async () => /wrong/.test((await cell.page.locator('dialog[open] [role="alert"]').textContent()) ?? ''));
+        assert.equal(await cell.page.locator('main .page').count(), 0);
+    }
+});
+
+test('an operator is known by name, runs the machine, and changes nothing of it', { timeout: 60_000 }, async () => {
+    await log_in('anna', 'a long horse battery');
+    await cell.page.locator('body:not([data-stale]) .page').waitFor({ timeout: 10_000 });
+    await until('name and role', async () => (await account().textContent()) === 'anna · operator');
+    assert.equal(await cell.page.locator('dialog[open]').count(), 0);
+    await cell.page.evaluate(() => { location.hash = 'axis/x'; });
+    await until('power may be given', () => cell.page.locator('[data-cmd="enable"]').isEnabled());
+    await cell.page.locator('[data-cmd="enable"]').click();
+    await until('x has power', async () => (await cell.axis('x')).powered);
+    await cell.page.evaluate(() => { location.hash = 'io'; });
+    const set = cell.page.locator('[data-output-point="gripper"] [data-set="1"]');
+    await set.waitFor();
+    assert.ok(await set.isDisabled());
+    assert.match((await set.getAttribute('data-reason')) ?? '', /operator/);
+});
+
+test('logged out, nothing is seen any more, in no window', { timeout: 60_000 }, async () => {
+    const second = await cell.page.context().newPage();
+    await second.goto(cell.address);
+    await second.locator('body:not([data-stale]) .page').waitFor({ timeout: 10_000 });
+    await cell.page.bringToFront();
+    await account().click();
+    await cell.page.locator('dialog[open] [data-do="log_out"]').click();
+    for (const page of [cell.page, second]) {
+        await until('it is asked who comes', async () => /Log in/.test((await page.locator('.stale').textContent()) ?? ''));
+        await until('the page is empty', async () => (await page.locator('main .page').count()) === 0);
+    }
+});
+
+test('a viewer looks', { timeout: 60_000 }, async () => {
+    if ((await cell.page.locator('dialog[open]').count()) === 0) await account().click();
+    await log_in('otto', 'another staple here');
+    await until('name and role', async () => (await account().textContent()) === 'otto · viewer');
+    await cell.page.evaluate(() => { location.hash = 'axis/x'; });
+    const power = cell.page.locator('[data-cmd="enable"], [data-cmd="disable"]').first();
+    await power.waitFor();
+    assert.ok(await power.isDisabled());
+    assert.match((await power.getAttribute('data-reason')) ?? '', /viewer/);
+    assert.ok(await cell.page.locator('[data-do="stop"]').isEnabled());
+});
