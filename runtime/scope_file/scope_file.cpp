@@ -107,7 +107,7 @@ Result<std::vector<Block>> parse_blocks(std::span<const std::byte> bytes, std::s
 Result<std::vector<std::byte>> file_bytes(const std::string& path) {
     const auto failed = [&] {
         return Error{"recording.open", path, fmt::format("the recording cannot be read: {}", std::strerror(errno)),
-                     "Check the name; `taktwerk recording list` shows those that are kept."};
+                     "Check the name; the log says where each recording was kept."};
     };
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{std::fopen(path.c_str(), "rb"), &std::fclose};
     if (!file) return failed();
