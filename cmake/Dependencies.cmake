@@ -28,6 +28,13 @@ add_library(libmodbus_imported INTERFACE)
 target_include_directories(libmodbus_imported SYSTEM INTERFACE "${LIBMODBUS_INCLUDE_DIR}")
 target_link_libraries(libmodbus_imported INTERFACE "${LIBMODBUS_LIBRARY}")
 
+# zstd: Debian's package has a pkg-config file only.
+find_path(ZSTD_INCLUDE_DIR zstd.h REQUIRED)  # libzstd-dev
+find_library(ZSTD_LIBRARY zstd REQUIRED)
+add_library(zstd_imported INTERFACE)
+target_include_directories(zstd_imported SYSTEM INTERFACE "${ZSTD_INCLUDE_DIR}")
+target_link_libraries(zstd_imported INTERFACE "${ZSTD_LIBRARY}")
+
 # Boost: headers of Asio and Beast for the page's server; nothing to link.
 find_path(BOOST_BEAST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # libboost-dev
 add_library(boost_imported INTERFACE)

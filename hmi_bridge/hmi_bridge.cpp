@@ -56,6 +56,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
     requests_.set_simulate(std::move(options.simulate));
     requests_.set_about(std::move(options.about));
     requests_.set_log(std::move(options.log_tail));
+    requests_.set_recorder(options.recorder);
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);

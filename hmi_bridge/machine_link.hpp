@@ -42,6 +42,8 @@ public:
         return nullptr;
     }
     // --- any thread (layout(), too) ---
+    /// The recording that was kept, or will be, around an alarm; empty: none. Service side.
+    [[nodiscard]] virtual std::string recording_of(const AlarmFact&, Instant) const { return {}; }
     /// Every signal of the newest cycles; nullptr: this machine keeps none. Lives as long as the machine.
     [[nodiscard]] virtual const runtime::SignalRows* signals() const { return nullptr; }
     /// Of the cycle and the tasks; empty where there are none.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hmi_bridge/machine_link.hpp"
+#include "runtime/flight/flight_recorder.hpp"
 #include "runtime/run/advance_watch.hpp"
 
 namespace taktwerk::hmi {
@@ -21,6 +22,11 @@ public:
     [[nodiscard]] Drive drive(std::uint16_t axis) override {
         auto* port = machine_.drive_port(axis);
         return {port, port ? machine_.config().axes[axis].profile.get() : nullptr};
+    }
+    /// `recorder` outlives the link; nullptr: nothing is kept.
+    void set_recorder(const runtime::FlightRecorder* recorder) noexcept { recorder_ = recorder; }
+    [[nodiscard]] std::string recording_of(const AlarmFact& fact, Instant since) const override {
+        return recorder_ ? recorder_->recording_of(fact, since) : std::string{};
     }
     [[nodiscard]] const runtime::SignalRows* signals() const override { return &machine_.signals(); }
     [[nodiscard]] ecat::Master* bus() override { return &machine_.bus(); }
@@ -47,6 +53,7 @@ public:
 
 private:
     runtime::Machine& machine_;
+    const runtime::FlightRecorder* recorder_ = nullptr;
     mutable std::mutex mutex_;
     std::optional<std::string> stuck_;
 };

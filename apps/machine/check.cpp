@@ -312,6 +312,18 @@ const axes::DriveProfile& profile_of(const MachineConfig& config, const std::str
 
 std::string sentence(const std::string& text) { return text.empty() || text.back() == '.' ? text : text + "."; }
 
+/// The memory of the scope.
+void print_recording(const MachineConfig& config, const runtime::SignalRing& ring) {
+    const auto& recording = config.recording;
+    fmt::print("\nRecording: {} of every cycle stay in memory for {:g} s: {:.1f} MB ({} bytes a cycle).{}\n",
+               count_text(ring.signals().size(), "signal"), to_seconds(recording.depth), static_cast<double>(ring.bytes()) / 1e6,
+               ring.words() * 8,
+               recording.files == 0
+                   ? std::string(" Nothing is kept around alarms.")
+                   : fmt::format(" Around an alarm that stops something {:g} s before and {:g} s behind it are kept, the newest {}.",
+                                 to_seconds(recording.before), to_seconds(recording.after), recording.files));
+}
+
 /// One sentence for all axes that it concerns.
 void print_hazards(const MachineConfig& config) {
     auto left = runtime::drive_hazards(config);
@@ -410,6 +422,8 @@ int check(const CheckOptions& options) {
 
     if (options.json) {
         auto summary = summary_json(config, layout, loaded.warnings, remarks);
+        const auto& ring = std::get<0>(built)->signals();
+        summary["recording"] = Json{{"signals", ring.signals().size()}, {"bytes", ring.bytes()}, {"bytes_a_cycle", ring.words() * 8}};
         if (!config.modbus.empty()) summary["modbus_tcp"] = modbus_asked_json(config.modbus);
         if (served) summary["modbus_server"] = modbus_offer_json(*served, hmi::names_of(layout));
         fmt::print("{}\n", summary.dump(2));
@@ -427,6 +441,7 @@ int check(const CheckOptions& options) {
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);
     print_programs(config, layout);
+    print_recording(config, std::get<0>(built)->signals());
     if (config.emergency_stop.input.empty())
         fmt::print("\nNo emergency stop input: the runtime does not hear when the safety circuit opens.\n");
     else

@@ -20,6 +20,7 @@
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/modbus_keeper.hpp"
 #include "apps/machine/page_server.hpp"
+#include "apps/machine/recordings_folder.hpp"
 #include "apps/machine/run_files.hpp"
 #include "apps/machine/sim_hands.hpp"
 #include "apps/machine/stop_signal.hpp"
@@ -49,7 +50,7 @@ namespace {
 using namespace runtime;
 
 struct RunOptions {
-    std::string file, trace, pcap, retain, evidence, hmi;
+    std::string file, trace, pcap, retain, evidence, recordings, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
 };
@@ -110,6 +111,20 @@ void say_evidence(const MachineLog& log, Instant now, const Result<Evidence::Fil
     else if (const auto text = evidence_text(*file); !text.empty()) log.say(now, "evidence", text);
 }
 
+void say_recording(const MachineLog& log, Instant now, const Result<FlightRecorder::File>& file) {
+    if (!file) log.say(now, "recording", file.error().text());
+    else if (const auto text = recording_text(*file); !text.empty()) log.say(now, "recording", text);
+}
+
+/// What could not be written so far; however many there are.
+void finish_recordings(const MachineLog& log, Instant now, FlightRecorder& recorder) {
+    for (bool more = true; more;) {
+        const auto file = recorder.finish();
+        more = !file || !file->path.empty();
+        say_recording(log, now, file);
+    }
+}
+
 std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines,
                                std::vector<modbus::tcp::Exchange*> exchanges) {
     auto built = Machine::build(std::move(config), transport, std::move(lines), std::move(exchanges));
@@ -124,7 +139,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
-    RunFiles files{options.pcap, options.trace, {}, {}, {}};
+    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}};
     auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, Duration{}); !ok) {
@@ -145,6 +160,10 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
         if (files.evidence && machine->latest() != nullptr) {
             files.evidence->look(*machine->latest());
             say_evidence(log, now, files.evidence->write_due(now));
+        }
+        if (files.recorder && machine->latest() != nullptr) {
+            files.recorder->look(*machine->latest());
+            say_recording(log, now, files.recorder->work());
         }
         const auto* snapshot = machine->latest();
         judge(snapshot, code);
@@ -169,6 +188,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
     runner.shut_down();
     if (files.evidence) say_evidence(log, clock.now(), files.evidence->finish());
+    if (files.recorder) finish_recordings(log, clock.now(), *files.recorder);
     finish(files, options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
     if (files.trace)
@@ -248,6 +268,8 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         world->also = [&hands](Instant now) { hands->step(now); };
         bridge_options.simulate = [&hands](const std::string& line) { return hands->ask(line); };
     }
+    bridge_options.recorder = files.recorder.get();
+    link.set_recorder(files.recorder.get());
     auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());
@@ -277,6 +299,17 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
             },
             [&log, &clock, evidence = files.evidence] {
                 say_evidence(log, clock.now(), evidence->finish());
+                return Result<void>{};
+            },
+            [](const Error&) {}));
+    if (files.recorder)
+        writers.push_back(std::make_unique<FileThread>(
+            [&log, &clock, recorder = files.recorder] {
+                say_recording(log, clock.now(), recorder->work());
+                return Result<void>{};
+            },
+            [&log, &clock, recorder = files.recorder] {
+                finish_recordings(log, clock.now(), *recorder);
                 return Result<void>{};
             },
             [](const Error&) {}));
@@ -338,6 +371,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
         kept.step(now, (*bridge)->snapshot());
         if (const auto* snapshot = (*bridge)->snapshot(); files.evidence && snapshot != nullptr) files.evidence->look(*snapshot);
+        if (const auto* snapshot = (*bridge)->snapshot(); files.recorder && snapshot != nullptr) files.recorder->look(*snapshot);
         time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {
             said_stop = true;
@@ -393,7 +427,7 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
             for (const auto& remark : nic->remarks()) fmt::print("{}\n", remark);
     }
     ecat::Transport& transport = world ? world->bus() : nic->bus();
-    RunFiles files{options.pcap, options.trace, {}, {}, {}};
+    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}};
     auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
     std::vector<std::unique_ptr<modbus::TtyLine>> ports;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -442,6 +476,8 @@ void add_run(CLI::App& app, Action& action) {
         "--hmi{}", options->hmi,
         "serve the page as well, by a process of its own: --hmi=ADDRESS:PORT, default 127.0.0.1 and port 8080 or the next free one");
     sub->add_flag("--no-events", options->without_events, "what stands under `simulation: events` does not happen");
+    sub->add_option("--recordings", options->recordings,
+                    "keep the seconds around each alarm that stops something in this directory, also of a simulated machine");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
     sub->add_flag("--quiet", options->quiet, "say only errors and what clients change");
     sub->callback([&action, options, hmi] {
@@ -457,6 +493,9 @@ void add_run(CLI::App& app, Action& action) {
             if (options->without_events) loaded->machine.simulation.events.clear();
             if (!options->retain.empty()) loaded->machine.retain = options->retain;
             if (!options->evidence.empty()) loaded->machine.evidence.directory = options->evidence;
+            auto& recordings = loaded->machine.recording.directory;
+            if (!options->recordings.empty()) recordings = options->recordings;
+            else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))
                 print_warning(Error{"config.nothing_to_retain", "--retain " + options->retain,
                                     "no axis has an absolute encoder: nothing will be kept",

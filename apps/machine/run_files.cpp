@@ -31,6 +31,11 @@ Result<void> RunFiles::open(runtime::Machine& machine, Duration epoch) {
         if (!opened) return opened.error();
         evidence = std::move(*opened);
     }
+    if (const auto& recording = machine.config().recording; !recording.directory.empty() && recording.files > 0) {
+        auto opened = runtime::FlightRecorder::open(machine, recording.directory, epoch);
+        if (!opened) return opened.error();
+        recorder = std::move(*opened);
+    }
     if (capture || evidence) machine.bus().set_tap(&tap, this);
     if (!trace_csv.empty()) {
         auto created = TraceCsv::create(trace_csv, machine.signals(), machine.layout());
@@ -56,6 +61,13 @@ std::string evidence_text(const runtime::Evidence::File& file) {
     if (file.path.empty()) return {};
     return fmt::format("{} of {:.1f} s around {} in {}", count_text(file.frames, "frame"), to_seconds(file.covered),
                        count_text(file.alarms, "alarm"), file.path);
+}
+
+std::string recording_text(const runtime::FlightRecorder::File& file) {
+    if (file.path.empty()) return {};
+    const auto& alarms = file.alarms;
+    return fmt::format("{:.1f} s around '{}' of {}{} in {}", to_seconds(file.covered), alarms.front().name, alarms.front().source,
+                       alarms.size() > 1 ? fmt::format(" (and {})", count_text(alarms.size() - 1, "further alarm")) : "", file.path);
 }
 
 }  // namespace taktwerk::apps

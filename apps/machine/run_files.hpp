@@ -1,5 +1,5 @@
 #pragma once
-// What `taktwerk run` writes while the machine runs, where that was asked for: frames of the bus, evidence around alarms, rows of a trace. Shared
+// What `taktwerk run` writes while the machine runs, where that was asked for: frames of the bus, evidence and recordings around alarms, rows of a trace. Shared
 // with the threads that write: one that a disk holds outlives everything.
 
 #include <memory>
@@ -12,6 +12,7 @@
 #include "core/time.hpp"
 #include "ecat/recording/frame_capture.hpp"
 #include "runtime/evidence/evidence.hpp"
+#include "runtime/flight/flight_recorder.hpp"
 #include "runtime/machine/machine.hpp"
 
 namespace taktwerk::apps {
@@ -22,6 +23,7 @@ struct RunFiles {
     std::shared_ptr<ecat::FrameCapture> capture;
     std::shared_ptr<runtime::Evidence> evidence;
     std::shared_ptr<TraceCsv> trace;
+    std::shared_ptr<runtime::FlightRecorder> recorder;
 
     /// `epoch`: calendar time at machine time 0. Stays where it is until the machine's last cycle. Errors: of the files.
     [[nodiscard]] Result<void> open(runtime::Machine& machine, Duration epoch);
@@ -33,5 +35,7 @@ struct RunFiles {
 
 /// "1,234 frames of 8.2 s around 'slave_lost' in evidence/..."; empty where nothing was written.
 [[nodiscard]] std::string evidence_text(const runtime::Evidence::File& file);
+/// "12.0 s around 'drive_fault' of axis y (and 2 further alarms) in .../demo-....twscope"; empty where nothing was written.
+[[nodiscard]] std::string recording_text(const runtime::FlightRecorder::File& file);
 
 }  // namespace taktwerk::apps

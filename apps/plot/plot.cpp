@@ -14,10 +14,12 @@
 #include <fmt/format.h>
 
 #include "apps/plot/plot_script.hpp"
+#include "apps/plot/recording_csv.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
+#include "runtime/scope_file/scope_file.hpp"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
@@ -25,7 +27,7 @@ namespace taktwerk::apps {
 namespace {
 
 struct PlotOptions {
-    std::string file, output, title;
+    std::string file, output, title, csv;
     std::vector<std::string> axes, bits, values;
     double from_s = 0, to_s = 0;
     bool following_error = false;
@@ -103,7 +105,23 @@ int plot(const PlotOptions& options) {
         print_error(error);
         return static_cast<int>(exit_bad_file);
     };
-    const auto trace = read_trace(options.file);
+    const bool recorded = options.file.ends_with(runtime::scope_ending);
+    if (!options.csv.empty() && !recorded)
+        return fail({"plot.csv", options.file, "it is no recording, so there is nothing to be turned into CSV",
+                     fmt::format("Give a recording (*{}).", runtime::scope_ending)});
+    std::string csv;
+    if (recorded) {
+        const auto kept = runtime::read_scope_file(options.file);
+        if (!kept) return fail(kept.error());
+        csv = recording_csv(*kept);
+    }
+    if (!options.csv.empty()) {
+        if (!write_text(options.csv, csv))
+            return fail({"plot.csv", options.csv, fmt::format("it cannot be written: {}", std::strerror(errno)), "Choose another place."});
+        fmt::print("{}\n", options.csv);
+        return exit_ok;
+    }
+    const auto trace = recorded ? parse_trace(csv, options.file) : read_trace(options.file);
     if (!trace) return fail(trace.error());
     if (trace->cut_off)
         print_warning({"trace.cut_off", options.file, "the last line is incomplete: the run was killed while it wrote",
@@ -141,9 +159,11 @@ int plot(const PlotOptions& options) {
 }  // namespace
 
 void add_plot(CLI::App& app, Action& action) {
-    auto* sub = app.add_subcommand("plot", "draw a trace as SVG: states, position, velocity, acceleration, jerk of each axis");
+    auto* sub =
+        app.add_subcommand("plot", "draw a trace or a recording as SVG: states, position, velocity, acceleration, jerk of each axis");
     auto options = std::make_shared<PlotOptions>();
-    sub->add_option("TRACE", options->file, "CSV file of `taktwerk run --trace`")->required();
+    sub->add_option("TRACE", options->file, "CSV file of `taktwerk run --trace`, or a recording around an alarm (*.twscope)")->required();
+    sub->add_option("--csv", options->csv, "instead of a picture: every signal of a recording as CSV, into this file");
     sub->add_option("-o,--output", options->output, "SVG file; default: the trace's name with .svg");
     sub->add_option("--axis", options->axes, "only these axes, e.g. --axis x,y")->delimiter(',');
     add_duration(*sub, "--from", options->from_s, "from this time of the trace on, e.g. 2s");

@@ -427,6 +427,24 @@ Table<runtime::EmergencyStop> emergency_stop_table() {
         {}};
 }
 
+Table<runtime::RecordingConfig> recording_table() {
+    using R = runtime::RecordingConfig;
+    return {"recording",
+            "Every signal of every cycle stays in memory for a while: for the scope, and for a recording around each alarm that stops an "
+            "axis or "
+            "the machine. `taktwerk check` says how many bytes that takes.",
+            {
+                field("depth", &R::depth, duration(100ms, 1h), "so long a signal can be looked back at"),
+                with_default(field("directory", &R::directory, text(), "folder for the recordings; relative to this file"),
+                             "`/var/lib/taktwerk/recordings`; simulated: beside the command socket"),
+                field("files", &R::files, integer<std::uint16_t>(0, 10000), "so many recordings are kept, the newest; 0: none is made"),
+                field("before", &R::before, duration(100ms, 1h), "what a recording shows before its alarm"),
+                field("after", &R::after, duration(100ms, 10min), "and behind it"),
+            },
+            {},
+            {}};
+}
+
 Table<runtime::EvidenceConfig> evidence_table() {
     using E = runtime::EvidenceConfig;
     return {
@@ -560,6 +578,9 @@ Table<MachineFile> machine_table() {
                                  "evidence", [](F & m) -> auto& { return m.machine.evidence; }, section(evidence_table()),
                                  "what was on the bus around each alarm that stops something, as a file for Wireshark"),
                              "none"));
+    f.push_back(field_at<F>(
+        "recording", [](F & m) -> auto& { return m.machine.recording; }, section(recording_table()),
+        "the memory of the scope, and what is kept around each alarm that stops something"));
     f.push_back(field_at<F>(
         "commands_per_cycle", [](F & m) -> auto& { return m.machine.commands_per_cycle; }, integer<std::uint8_t>(1, 64),
         "operator commands taken per cycle"));

@@ -142,7 +142,7 @@ JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function
     : gateway_(gateway),
       machine_(machine),
       drives_(machine, std::move(log), &gateway.hands()),
-      scope_(machine.signals()),
+      scope_(machine),
       questions_(machine),
       measurements_(machine),
       wall_utime_(std::move(wall_utime)) {}
@@ -204,7 +204,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         if (entry.word == cmd) return ask_drive(entry.kind, connection, id_text, fields, now);
     if (ScopeRequests::knows(cmd)) {
         fields.integer("utime");
-        if (const auto begun = scope_.handle(connection, id_text, cmd, fields); !begun) refuse(connection, id_text, begun.error());
+        if (const auto begun = scope_.handle(connection, id_text, cmd, fields, now); !begun) refuse(connection, id_text, begun.error());
         return;
     }
     if (MachineQuestions::knows(cmd)) return questions_.ask(cmd, connection, id_text, fields, snapshot_, now);
@@ -309,8 +309,11 @@ void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, con
 }
 
 void JsonRequests::step(Instant now) {
-    scope_.step();
-    while (auto done = scope_.next_answer()) answer(done->connection, std::move(done->text));
+    scope_.step(snapshot_, now);
+    while (auto done = scope_.next_answer()) {
+        if (done->error) refuse(done->connection, done->id, *done->error);
+        else answer(done->connection, std::move(done->text));
+    }
     if (!began_) began_ = now;
     questions_.step(snapshot_, now);
     while (auto answered = questions_.next_answer()) {

@@ -45,6 +45,8 @@ public:
     using Simulate = std::function<Result<void>(const std::string& line)>;
     /// Without one the machine is real, and the request is refused.
     void set_simulate(Simulate simulate) { simulate_ = std::move(simulate); }
+    /// Recordings around alarms; outlives this. Without one there are none.
+    void set_recorder(runtime::FlightRecorder* recorder) noexcept { scope_.set_recorder(recorder); }
 
     /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }

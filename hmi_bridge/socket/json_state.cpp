@@ -132,6 +132,7 @@ void put_alarms(JsonWriter& json, const runtime::Snapshot& snapshot, const Machi
         json.field("remedy", words.remedy);
         json.field("reset", words.reset);
         json.field("manual", words.manual);
+        if (const auto recording = machine.recording_of(alarm.fact, alarm.since); !recording.empty()) json.field("recording", recording);
         json.close('}');
     }
 }

@@ -61,6 +61,12 @@ inline constexpr std::array command_rules{
     CommandRule{"shutdown", Role::admin, true},
     CommandRule{"scope_signals", Role::viewer, false},
     CommandRule{"scope_read", Role::viewer, false},
+    CommandRule{"scope_arm", Role::viewer, false},
+    CommandRule{"scope_state", Role::viewer, false},
+    CommandRule{"scope_disarm", Role::viewer, false},
+    CommandRule{"recordings", Role::viewer, false},
+    CommandRule{"recording_signals", Role::viewer, false},
+    CommandRule{"recording_read", Role::viewer, false},
 };
 
 /// Whose answers may be long: they come over a connection of their own, so that they delay neither a stop nor the renewal of a jog.

@@ -53,6 +53,14 @@ private:
         if (config_.commands_per_cycle == 0)
             problems_.add("machine.commands_per_cycle", "commands_per_cycle", "with 0 commands a cycle nobody can operate the machine",
                           "use 4");
+        // The alarms that share a recording, and a disk that is slow for a moment.
+        const auto& recording = config_.recording;
+        if (recording.files > 0 && recording.depth < recording.before + recording.after + 2s)
+            problems_.add("machine.recording_depth", "recording.depth",
+                          fmt::format("{:g} s are kept, and a recording takes {:g} s before its alarm and {:g} s behind it",
+                                      to_seconds(recording.depth), to_seconds(recording.before), to_seconds(recording.after)),
+                          fmt::format("write `depth: {:g} s` or more, a shorter `before`, or `files: 0` for no recordings",
+                                      to_seconds(recording.before + recording.after + 2s)));
         if (config_.emergency_stop.power_off_after < Duration::zero())
             problems_.add("machine.emergency_stop_time", "emergency_stop.power_off_after", "a time below 0", "use for instance 500 ms");
     }

@@ -15,6 +15,7 @@
 #include "core/time.hpp"
 #include "ecat/recording/frame_memory.hpp"
 #include "runtime/machine/machine.hpp"
+#include "runtime/new_alarms.hpp"
 
 namespace taktwerk::runtime {
 
@@ -52,11 +53,11 @@ private:
         std::string name, text;
     };
     Evidence(const Machine& machine, Duration epoch);
-    void notice(const AlarmFact& fact, Reaction reaction, Instant since);
+    /// True: a file will show it.
+    bool notice(const AlarmFact& fact, Reaction reaction, Instant since);
     [[nodiscard]] std::vector<Noticed> due(Instant now);
     [[nodiscard]] Result<File> write(const Recorder& moments, const std::vector<Noticed>& alarms);
     [[nodiscard]] std::string path_of(const Noticed& alarm) const;
-    void remove_oldest() const;
 
     const Machine& machine_;
     const EvidenceConfig& config_;
@@ -64,8 +65,7 @@ private:
     ecat::FrameMemory frames_;
 
     // service side
-    std::vector<Noticed> standing_;
-    std::uint64_t next_passed_ = 0;
+    NewAlarms alarms_;
 
     std::mutex mutex_;
     std::vector<Noticed> noticed_;  // handed over

@@ -89,6 +89,7 @@ void RealtimeRunner::watch_thread() {
 
 Result<RealtimeReport> RealtimeRunner::start() {
     auto whole = prepare_process(request_, latency_);
+    machine_.signals().touch();  // where memory may not be locked, too
     cycle_running_.store(true, std::memory_order_release);
     cycle_ = std::thread{[this] { cycle_thread(); }};
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <chrono>
 #include <cmath>
 
 #include "apps/plot/plot_data.hpp"
 #include "apps/plot/plot_script.hpp"
+#include "apps/plot/recording_csv.hpp"
 #include "apps/plot/trace_file.hpp"
 
 namespace taktwerk::apps {
@@ -32,6 +35,20 @@ TEST(TraceFile, TimeIsThatOfTheLogAndUnitsComeFromTheHeading) {
     EXPECT_EQ(trace->axes[0].unit, "mm");
     EXPECT_THAT(trace->axes[0].set_position, ElementsAre(7.25, 8));
     EXPECT_THAT(trace->axes[0].following_error, ElementsAre(0.25, 0.25));
+}
+
+// A recording is drawn as a trace is: each signal a column, with its unit, the time from its first row.
+TEST(RecordingCsv, IsTheTraceOfItsCycles) {
+    using Coding = runtime::SignalCell::Coding;
+    runtime::ScopeHead head;
+    head.words = 2;
+    head.cycle = std::chrono::milliseconds{1};
+    head.first_cycle = 100;
+    head.signals = {{"time_s", "s", {}, {}, "", "", "", {0, 0, 64, Coding::integer, 1e9}},
+                    {"x.a", "mm", {}, {}, "x", "", "", {1, 0, 64, Coding::real, 1}}};
+    const runtime::KeptRows kept{head,
+                                 {5'000'000'000, 5'001'000'000, std::bit_cast<std::uint64_t>(0.1), std::bit_cast<std::uint64_t>(-3.0)}};
+    EXPECT_EQ(recording_csv(kept), "time_s,x.a[mm]\n0,0.1\n0.001000000000000334,-3\n");
 }
 
 TEST(TraceFile, ALineOfAKilledWriterIsLeftOutAndSaid) {

@@ -39,9 +39,10 @@ const std::vector<OwnedInclude>& owned_includes() {
         {std::regex("^yaml-cpp/"), {"config"}, {}, "yaml-cpp"},
         {std::regex("^pugixml"), {"ecat/esi"}, {}, "pugixml"},
         {std::regex("^modbus/modbus"), {"modbus/tcp", "tests"}, {}, "libmodbus"},
+        {std::regex("^zstd"), {"runtime/scope_file"}, {}, "zstd"},
         {std::regex("^(boost/|hmi_bridge/web/server/(?!web_server))"), {"hmi_bridge/web/server"}, {}, "Boost"},
         {std::regex("^sodium(/|\\.h)"), {"hmi_bridge/web/account"}, {}, "libsodium"},
-        {std::regex("^nlohmann/"), {"hmi_bridge", "apps"}, {}, "nlohmann-json"},
+        {std::regex("^nlohmann/"), {"hmi_bridge", "apps", "runtime/scope_file"}, {}, "nlohmann-json"},
         {std::regex("^CLI/"), {"apps"}, {}, "CLI11"},
         {std::regex("^(gtest|gmock|benchmark)/"), {"tests"}, {}, "a test library"},
     };

@@ -6,15 +6,41 @@
 #include <nlohmann/json.hpp>
 
 #include "hmi_bridge/socket/json_requests.hpp"
+#include "runtime/recording/signal_ring.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
 using namespace taktwerk;
 using namespace taktwerk::hmi;
 
+namespace {
+
+/// Some rows for the scope: its words are numbers, infinite ones and none among them.
+runtime::SignalRing& rows() {
+    using runtime::SignalGroup, runtime::SignalKind, runtime::SignalCell;
+    static runtime::SignalRing ring{
+        {{"time_s", "s", SignalKind::real, SignalGroup::machine, "", "", "", {0, 0, 64, SignalCell::Coding::integer, 1e9}},
+         {"x.set_position", "mm", SignalKind::real, SignalGroup::axis, "x", "", "", {1, 0, 64, SignalCell::Coding::real, 1}},
+         {"x.state", "", SignalKind::state, SignalGroup::axis, "x", "", "", {2, 3, 5, SignalCell::Coding::natural, 1}}},
+        3,
+        50,
+        std::chrono::milliseconds{1}};
+    for (std::uint64_t cycle = 1; ring.span().last < 80; ++cycle) {
+        auto row = ring.begin(cycle);
+        row.put(Duration{cycle * 1'000'000});
+        row.put(cycle % 7 == 0 ? std::nan("") : cycle % 5 == 0 ? HUGE_VAL : static_cast<double>(cycle));
+        row.put(cycle * 977);
+        ring.commit();
+    }
+    return ring;
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     // What is longer is no deeper, only slower: a few lines show what one does to the next.
     if (size > 1024) return -1;
     test::FakeMachine machine;
+    machine.rows = &rows();
     Gateway gateway(machine);
     JsonRequests requests(gateway, machine, [] { return std::int64_t{1'800'000'000'000'000}; });
     gateway.observe(true);
@@ -51,6 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gateway.step(now);
         requests.step(now);
         while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
+        requests.step(now);  // one is enough for so few rows
         int answers = 0;
         while (const auto line = requests.next_line()) {
             if (++answers > 1 || !nlohmann::json::accept(line->text) || line->text.find('\n') != std::string::npos) std::abort();

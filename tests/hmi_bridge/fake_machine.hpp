@@ -65,6 +65,8 @@ public:
     }
     [[nodiscard]] Drive drive(std::uint16_t axis) override { return axis < drives.size() ? drives[axis] : Drive{}; }
     [[nodiscard]] runtime::MachineTimes times() const override { return its_times; }
+    [[nodiscard]] const runtime::SignalRows* signals() const override { return rows; }
+    [[nodiscard]] std::string recording_of(const AlarmFact& fact, Instant) const override { return fact.id == recorded ? "demo-1" : ""; }
     runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override {
         stops.push_back(axis);
         return {0, ++levels};
@@ -102,6 +104,8 @@ public:
     std::uint64_t levels = 0;
     bool takes_levels = true;
     std::optional<std::string> stuck_words;
+    const runtime::SignalRows* rows = nullptr;
+    AlarmId recorded = 0;  ///< the alarm that has a recording
 };
 
 }  // namespace taktwerk::hmi::test

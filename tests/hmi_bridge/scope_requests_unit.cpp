@@ -13,6 +13,7 @@
 #include "hmi_bridge/socket/base64.hpp"
 #include "runtime/recording/signal_ring.hpp"
 #include "tests/hmi_bridge/base64_text.hpp"
+#include "tests/hmi_bridge/fake_machine.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -47,6 +48,7 @@ TEST(Base64, IsThatOfTheStandard) {
 class ScopeRequestsTest : public testing::Test {
 protected:
     ScopeRequestsTest() {
+        machine.rows = &ring;
         for (std::uint64_t cycle = 1; cycle <= 3000; ++cycle) write(cycle, static_cast<double>(cycle) / 8);
     }
     void write(std::uint64_t cycle, double position) {
@@ -59,14 +61,15 @@ protected:
     json ask(const json& request, int* steps = nullptr) {
         JsonFields fields(request);
         (void)fields.text("cmd", true);
-        if (const auto begun = scope.handle(1, "7", request["cmd"].get<std::string>(), fields); !begun)
+        if (const auto begun = scope.handle(1, "7", request["cmd"].get<std::string>(), fields, now); !begun)
             return json{{"code", begun.error().code}, {"remedy", begun.error().remedy}};
         for (int i = 0; i < 10000; ++i) {
             if (const auto answer = scope.next_answer()) {
                 if (steps) *steps = i;
+                if (answer->error) return json{{"code", answer->error->code}, {"remedy", answer->error->remedy}};
                 return json::parse(answer->text);
             }
-            scope.step();
+            scope.step(&machine.snapshot, now);
         }
         ADD_FAILURE() << "no answer";
         return {};
@@ -88,7 +91,9 @@ protected:
         3,
         2000,
         1ms};
-    ScopeRequests scope{&ring};
+    test::FakeMachine machine;
+    ScopeRequests scope{machine};
+    Instant now{10s};
 };
 
 TEST_F(ScopeRequestsTest, SignalsAreNamedWithAllThatAPageNeeds) {
@@ -180,13 +185,15 @@ TEST_F(ScopeRequestsTest, ALongReadingIsDoneInStepsAndNoAnswerIsTooLong) {
         for (int w = 0; w < 3; ++w) row.put(static_cast<double>(cycle));
         large.commit();
     }
-    ScopeRequests other{&large};
+    test::FakeMachine large_machine;
+    large_machine.rows = &large;
+    ScopeRequests other{large_machine};
     const json request{{"cmd", "scope_read"}, {"signals", names}, {"from", 1}};
     JsonFields fields(request);
     (void)fields.text("cmd", true);
-    ASSERT_TRUE(other.handle(1, "1", "scope_read", fields).ok());
+    ASSERT_TRUE(other.handle(1, "1", "scope_read", fields, now).ok());
     std::optional<ScopeRequests::Answer> got;
-    for (int i = 0; i < 1000 && !(got = other.next_answer()); ++i) other.step();
+    for (int i = 0; i < 1000 && !(got = other.next_answer()); ++i) other.step(nullptr, now);
     ASSERT_TRUE(got.has_value());
     const auto thinned = json::parse(got->text);
     std::size_t total = 0;
@@ -201,13 +208,13 @@ TEST_F(ScopeRequestsTest, WhoAsksTooMuchIsToldAndAClosedConnectionIsForgotten) {
     const auto begin = [&](ConnectionId connection) {
         JsonFields fields(request);
         (void)fields.text("cmd", true);
-        return scope.handle(connection, "1", "scope_read", fields);
+        return scope.handle(connection, "1", "scope_read", fields, now);
     };
     for (std::size_t i = 0; i < ScopeRequests::most_reads; ++i) EXPECT_TRUE(begin(1).ok());
     EXPECT_EQ(begin(1).error().code, "scope.busy");
     EXPECT_TRUE(begin(2).ok()) << "another client's are another's";
     scope.forget(1);
-    for (int i = 0; i < 100; ++i) scope.step();
+    for (int i = 0; i < 100; ++i) scope.step(nullptr, now);
     const auto only = scope.next_answer();
     ASSERT_TRUE(only.has_value());
     EXPECT_EQ(only->connection, 2u);
@@ -238,10 +245,11 @@ TEST_F(ScopeRequestsTest, BrokenRequestsGetOneClearErrorEach) {
 }
 
 TEST(ScopeRequests, AMachineWithoutAMemorySaysSo) {
-    ScopeRequests scope{nullptr};
+    const test::FakeMachine machine;
+    ScopeRequests scope{machine};
     const json request{{"cmd", "scope_signals"}};
     JsonFields fields(request);
-    EXPECT_EQ(scope.handle(1, "1", "scope_signals", fields).error().code, "scope.none");
+    EXPECT_EQ(scope.handle(1, "1", "scope_signals", fields, Instant{1s}).error().code, "scope.none");
 }
 
 }  // namespace

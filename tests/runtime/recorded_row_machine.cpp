@@ -115,6 +115,7 @@ TEST(RecordedRow, HasEverySignalOfTheSnapshotToTheLastBit) {
 TEST(RecordedRow, TheMemoryIsAsDeepAsTheFileSays) {
     auto config = machine_config(1);
     config.recording.depth = 300ms;
+    config.recording.files = 0;
     TestMachine m{config};
     ASSERT_TRUE(m.up());
     m.run(1s);

@@ -61,7 +61,13 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
                                                       {"log", "nyyy"},
                                                       {"shutdown", "nnny"},
                                                       {"scope_signals", "yyyy"},
-                                                      {"scope_read", "yyyy"}};
+                                                      {"scope_read", "yyyy"},
+                                                      {"scope_arm", "yyyy"},
+                                                      {"scope_state", "yyyy"},
+                                                      {"scope_disarm", "yyyy"},
+                                                      {"recordings", "yyyy"},
+                                                      {"recording_signals", "yyyy"},
+                                                      {"recording_read", "yyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
