@@ -28,6 +28,9 @@ add_library(libmodbus_imported INTERFACE)
 target_include_directories(libmodbus_imported SYSTEM INTERFACE "${LIBMODBUS_INCLUDE_DIR}")
 target_link_libraries(libmodbus_imported INTERFACE "${LIBMODBUS_LIBRARY}")
 
+# SQLite: CMake has a module of its own for it.
+find_package(SQLite3 REQUIRED)  # libsqlite3-dev
+
 # Boost: headers of Asio and Beast for the page's server; nothing to link.
 find_path(BOOST_BEAST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # libboost-dev
 add_library(boost_imported INTERFACE)

@@ -41,6 +41,7 @@ const std::vector<OwnedInclude>& owned_includes() {
         {std::regex("^modbus/modbus"), {"modbus/tcp", "tests"}, {}, "libmodbus"},
         {std::regex("^(boost/|hmi_bridge/web/server/(?!web_server))"), {"hmi_bridge/web/server"}, {}, "Boost"},
         {std::regex("^sodium(/|\\.h)"), {"hmi_bridge/web/account"}, {}, "libsodium"},
+        {std::regex("^sqlite3"), {"hmi_bridge/history"}, {}, "SQLite"},
         {std::regex("^nlohmann/"), {"hmi_bridge", "apps"}, {}, "nlohmann-json"},
         {std::regex("^CLI/"), {"apps"}, {}, "CLI11"},
         {std::regex("^(gtest|gmock|benchmark)/"), {"tests"}, {}, "a test library"},
