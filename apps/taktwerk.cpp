@@ -54,8 +54,10 @@ int run(int argc, char** argv) {
     add_check(app, action);
     add_monitor(app, action);
     add_hmi(app, action);
+    add_lcm(app, action);
     add_operate(app, action);
     add_measure(app, action);
+    add_alarms(app, action);
     add_bus(app, action);
     add_drive(app, action);
     add_plot(app, action);

@@ -25,8 +25,10 @@ void add_plot(CLI::App& app, Action& action);
 /// Measures an axis while it is held.
 void add_measure(CLI::App& app, Action& action);
 void add_hmi(CLI::App& app, Action& action);  ///< the page's server
+void add_lcm(CLI::App& app, Action& action);  ///< spy, record, play
 void add_monitor(CLI::App& app, Action& action);
 void add_operate(CLI::App& app, Action& action);  ///< jog, home, enable, reset, start, stop, set, mode, ...
+void add_alarms(CLI::App& app, Action& action);   ///< of a running machine: those that stand, and the history
 void add_docs(CLI::App& app, Action& action);     ///< generated reference: blocks, configuration, alarms, errors
 
 }  // namespace taktwerk::apps

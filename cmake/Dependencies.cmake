@@ -34,6 +34,8 @@ find_library(ZSTD_LIBRARY zstd REQUIRED)
 add_library(zstd_imported INTERFACE)
 target_include_directories(zstd_imported SYSTEM INTERFACE "${ZSTD_INCLUDE_DIR}")
 target_link_libraries(zstd_imported INTERFACE "${ZSTD_LIBRARY}")
+# SQLite: CMake has a module of its own for it.
+find_package(SQLite3 REQUIRED)  # libsqlite3-dev
 
 # Boost: headers of Asio and Beast for the page's server; nothing to link.
 find_path(BOOST_BEAST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # libboost-dev

@@ -4,6 +4,7 @@
 #            share/taktwerk/schema (JSON Schema of machine and drive files, for editors) · share/taktwerk/lcm (the types of the channels)
 #            share/doc/taktwerk (README, LICENSE, docs/ and the protocol of the socket, with their links to each other intact)
 #   sdk      include/taktwerk/ · lib/cmake/Taktwerk: what find_package(Taktwerk) needs to build programs elsewhere
+#            include/taktwerk_lcm/ · share/taktwerk/{lcm,examples/lcm}: what somebody else's HMI needs (Taktwerk::lcm, docs/lcm.md)
 #
 # The SDK holds no library: blocks are headers, and a program reaches the machine only through what it is handed.
 include(GNUInstallDirs)
@@ -25,7 +26,7 @@ endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/schema" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
   FILES_MATCHING PATTERN "*.json")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/hmi_bridge/lcm" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
-  FILES_MATCHING PATTERN "*.lcm")
+  FILES_MATCHING PATTERN "*.lcm" PATTERN examples EXCLUDE)
 set(doc_folder "${CMAKE_INSTALL_DATAROOTDIR}/doc/taktwerk")  # Debian's name for it, not the project's capital
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${doc_folder}" COMPONENT runtime)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${doc_folder}" COMPONENT runtime)
@@ -49,8 +50,14 @@ set(TAKTWERK_SDK_INCLUDE [[${TAKTWERK_SDK_INCLUDE}]])" COMPONENT sdk)
 install(SCRIPT "${PROJECT_SOURCE_DIR}/cmake/InstallSdkHeaders.cmake" COMPONENT sdk)
 
 configure_package_config_file(cmake/TaktwerkConfig.cmake.in "${PROJECT_BINARY_DIR}/sdk/TaktwerkConfig.cmake"
-  INSTALL_DESTINATION "${sdk_cmake}" PATH_VARS TAKTWERK_SDK_INCLUDE)
+  INSTALL_DESTINATION "${sdk_cmake}" PATH_VARS TAKTWERK_SDK_INCLUDE CMAKE_INSTALL_INCLUDEDIR)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/sdk/TaktwerkConfigVersion.cmake" VERSION "${PROJECT_VERSION}"
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)  # headers only; whether a program fits a runtime is the ABI hash's business
 install(FILES "${PROJECT_BINARY_DIR}/sdk/TaktwerkConfig.cmake" "${PROJECT_BINARY_DIR}/sdk/TaktwerkConfigVersion.cmake"
   "${PROJECT_SOURCE_DIR}/cmake/TaktwerkProgram.cmake" DESTINATION "${sdk_cmake}" COMPONENT sdk)
+if(TARGET taktwerk_lcm_types)
+  install(DIRECTORY "${PROJECT_BINARY_DIR}/lcm_types/taktwerk_lcm" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/hmi_bridge/lcm/" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk/lcm" COMPONENT sdk
+    FILES_MATCHING PATTERN "*.lcm" PATTERN examples EXCLUDE)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/hmi_bridge/lcm/examples/" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk/examples/lcm" COMPONENT sdk)
+endif()

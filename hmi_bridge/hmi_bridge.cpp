@@ -52,7 +52,8 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       requests_(gateway_, machine, options.wall_utime, options.log),
       receiver_(gateway_, options.wall_utime),
       door_(machine, std::move(server), options.log),
-      door_thread_(options.door) {
+      door_thread_(options.door),
+      wall_utime_(options.wall_utime) {
     requests_.set_simulate(std::move(options.simulate));
     requests_.set_about(std::move(options.about));
     requests_.set_log(std::move(options.log_tail));
@@ -68,6 +69,7 @@ void HmiBridge::step(Instant now) {
     snapshot_ = machine_.latest();
     gateway_.observe(snapshot_ != nullptr);
     requests_.observe(snapshot_);
+    if (history_ && snapshot_) history_->look(*snapshot_, now, wall_utime_());
 
     gateway_.step(now);  // answers to what was asked before
     if (door_thread_ == DoorThread::service) door_.step(now);

@@ -12,10 +12,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "hmi_bridge/gateway/gateway.hpp"
+#include "hmi_bridge/history/alarm_history.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "hmi_bridge/lcm/lcm_commands.hpp"
 #include "hmi_bridge/lcm/message_bus.hpp"
@@ -55,6 +57,11 @@ public:
     static Result<std::unique_ptr<HmiBridge>> open(const HmiConfig& config, MachineLink& machine, HmiOptions options);
 
     void step(Instant now);
+    /// What alarms are kept in; step() looks, somebody else's thread writes. Before the first step.
+    void keep(std::shared_ptr<AlarmHistory> history) {
+        history_ = std::move(history);
+        requests_.set_history(history_.get());
+    }
     [[nodiscard]] Door& door() noexcept { return door_; }
     /// Of the configuration; nullptr: none. Stepped by step(), or where the door has a thread of its own by another of the caller's.
     [[nodiscard]] modbus::server::Server* modbus_server() noexcept { return modbus_ ? &modbus_->server() : nullptr; }
@@ -82,6 +89,8 @@ private:
     Door door_;
     DoorThread door_thread_;
     std::unique_ptr<ModbusDesk> modbus_;
+    std::shared_ptr<AlarmHistory> history_;
+    std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     Instant now_{};
 };

@@ -17,6 +17,11 @@ enum class LcmCommands : std::uint8_t {
     local,  ///< also over LCM with ttl=0: every process of this host may command, but for what the gateway takes from known clients alone
 };
 
+struct HistoryConfig {
+    std::string directory;      ///< of the file; empty: the runtime's own choice (apps/machine/history_folder.hpp)
+    std::int64_t rows = 10000;  ///< alarms kept, the newest; 0: no history
+};
+
 struct HmiConfig {
     bool lcm = true;  ///< publish the state over LCM
     std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
@@ -26,6 +31,7 @@ struct HmiConfig {
     std::string
         socket_group;    ///< group of the socket: besides the runtime's own user (and root) its members command; empty: the process' group
     std::string socket;  ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
+    HistoryConfig history;
     std::optional<ModbusServerConfig> modbus_server;  ///< nothing: no Modbus client is served
 };
 

@@ -16,6 +16,7 @@
 #include "apps/machine/about.hpp"
 #include "apps/machine/crash_line.hpp"
 #include "apps/machine/file_thread.hpp"
+#include "apps/machine/history_file.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/modbus_keeper.hpp"
@@ -34,6 +35,7 @@
 #include "core/math.hpp"
 #include "core/realtime.hpp"
 #include "ecat/ring/bus_interfaces.hpp"
+#include "hmi_bridge/history/alarm_history.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
 #include "modbus/line/tty_line.hpp"
@@ -50,7 +52,7 @@ namespace {
 using namespace runtime;
 
 struct RunOptions {
-    std::string file, trace, pcap, retain, evidence, recordings, hmi;
+    std::string file, trace, pcap, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
 };
@@ -153,6 +155,12 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
     VirtualRunner runner{*machine, world, clock};
+    std::optional<hmi::AlarmHistory> history;  // only where it was asked for: a run in virtual time leaves nothing behind by itself
+    if (!options.history.empty() && loaded.hmi.history.rows > 0)
+        history.emplace(
+            history_path(options.history, machine->layout().machine), loaded.hmi.history.rows,
+            [&](const AlarmFact& fact) { return machine->describe(fact); },
+            [&](std::string_view text) { log.say(clock.now(), "history", std::string(text)); });
     int code = exit_ok;
     runner.after_cycle = [&](Instant now) {
         if (files.trace) (void)files.trace->drain().ok();  // an error comes again from finish()
@@ -166,6 +174,10 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
             say_recording(log, now, files.recorder->work());
         }
         const auto* snapshot = machine->latest();
+        if (history && snapshot != nullptr) {
+            history->look(*snapshot, now, now.time_since_epoch() / std::chrono::microseconds{1});
+            history->work(now);
+        }
         judge(snapshot, code);
         if (!options.quiet) log.step(now, snapshot);
         if (stop_requested()) machine->request_shutdown();
@@ -189,6 +201,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     runner.shut_down();
     if (files.evidence) say_evidence(log, clock.now(), files.evidence->finish());
     if (files.recorder) finish_recordings(log, clock.now(), *files.recorder);
+    if (history) history->finish(clock.now());
     finish(files, options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
     if (files.trace)
@@ -313,6 +326,24 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
                 return Result<void>{};
             },
             [](const Error&) {}));
+    if (hmi_config.history.rows > 0) {
+        const auto place = history_place(hmi_config.history, machine.layout(), (*bridge)->socket_path());
+        const auto say = [&log, &clock](std::string_view text) { log.say(clock.now(), "history", std::string(text)); };
+        const auto history = std::make_shared<hmi::AlarmHistory>(
+            place.path, hmi_config.history.rows, [&link](const AlarmFact& fact) { return link.describe(fact); }, say);
+        (*bridge)->keep(history);
+        if (!place.remark.empty() && !options.quiet) say(place.remark);
+        writers.push_back(std::make_unique<FileThread>(
+            [history, &clock] {
+                history->work(clock.now());
+                return Result<void>{};
+            },
+            [history, &clock] {
+                history->finish(clock.now());
+                return Result<void>{};
+            },
+            [](const Error&) {}));
+    }
     const auto files_written = [&] {
         auto worst = FileThread::End::complete;
         for (auto& writer : writers) worst = std::max(worst, writer->finish(file_patience));
@@ -386,7 +417,8 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     if (written == FileThread::End::hangs) {
         // Its thread hangs in the kernel and holds what it writes from: nothing of this process can be taken down any more.
         out.finish(last_lines_patience);
-        say_directly({"run.disk_hangs", "run", "the machine is down, but a disk does not take the rest of the trace or capture",
+        say_directly({"run.disk_hangs", "run",
+                      "the machine is down, but a disk does not take the rest of the trace, capture or alarm history",
                       "Look at that disk; the file is not complete."});
         std::_Exit(exit_bad_file);
     }
@@ -478,6 +510,7 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_flag("--no-events", options->without_events, "what stands under `simulation: events` does not happen");
     sub->add_option("--recordings", options->recordings,
                     "keep the seconds around each alarm that stops something in this directory, also of a simulated machine");
+    sub->add_option("--history", options->history, "keep the alarms in this directory, also in virtual time");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
     sub->add_flag("--quiet", options->quiet, "say only errors and what clients change");
     sub->callback([&action, options, hmi] {
@@ -496,6 +529,7 @@ void add_run(CLI::App& app, Action& action) {
             auto& recordings = loaded->machine.recording.directory;
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
+            if (!options->history.empty()) loaded->hmi.history.directory = options->history;
             if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))
                 print_warning(Error{"config.nothing_to_retain", "--retain " + options->retain,
                                     "no axis has an absolute encoder: nothing will be kept",

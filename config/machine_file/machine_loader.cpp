@@ -57,7 +57,8 @@ public:
             for (auto& device : out.machine.modbus) device.host.clear();
         }
         // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
-        for (auto* kept : {&out.machine.retain, &out.machine.evidence.directory, &out.machine.recording.directory}) {
+        for (auto* kept :
+             {&out.machine.retain, &out.machine.evidence.directory, &out.machine.recording.directory, &out.hmi.history.directory}) {
             if (out.machine.bus.interface.empty()) kept->clear();
             else if (!kept->empty() && fs::path(*kept).is_relative())
                 *kept = (fs::path(path_).parent_path() / *kept).lexically_normal().string();

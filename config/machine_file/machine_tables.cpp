@@ -461,6 +461,19 @@ Table<runtime::EvidenceConfig> evidence_table() {
         {}};
 }
 
+Table<hmi::HistoryConfig> history_table() {
+    using H = hmi::HistoryConfig;
+    return {"history",
+            "Every alarm with its words and times, kept over restarts; `taktwerk alarms --history` and the page show it.",
+            {
+                with_default(field("directory", &H::directory, text(), "folder for its file; relative to this file"),
+                             "the state directory of the service, else /var/lib/taktwerk where it may be written, else beside the socket"),
+                field("rows", &H::rows, integer<std::int64_t>(0, 1'000'000), "so many alarms are kept, the newest; 0: no history"),
+            },
+            {},
+            {}};
+}
+
 Table<runtime::CycleWatch> watch_table() {
     using W = runtime::CycleWatch;
     return {"watch",
@@ -581,6 +594,8 @@ Table<MachineFile> machine_table() {
     f.push_back(field_at<F>(
         "recording", [](F & m) -> auto& { return m.machine.recording; }, section(recording_table()),
         "the memory of the scope, and what is kept around each alarm that stops something"));
+    f.push_back(field_at<F>(
+        "history", [](F & m) -> auto& { return m.hmi.history; }, section(history_table()), "the alarms that were, kept over restarts"));
     f.push_back(field_at<F>(
         "commands_per_cycle", [](F & m) -> auto& { return m.machine.commands_per_cycle; }, integer<std::uint8_t>(1, 64),
         "operator commands taken per cycle"));

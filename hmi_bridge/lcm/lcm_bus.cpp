@@ -10,7 +10,9 @@
 #include <cerrno>
 #include <cstring>
 #include <optional>
+#include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -69,11 +71,33 @@ struct Subscriber {
     }
 };
 
+struct ChannelSubscriber {
+    LcmBus::ChannelHandler handler;
+    void receive(const lcm::ReceiveBuffer* message, const std::string& channel) noexcept {
+        try {
+            handler(channel, {static_cast<const std::byte*>(message->data), message->data_size}, message->recv_utime);
+        } catch (...) {
+            // As above.
+        }
+    }
+};
+
+/// LCM itself would print into the terminal and go on.
+bool is_regular_expression(const std::string& pattern) {
+    try {
+        static_cast<void>(std::regex(pattern));
+        return true;
+    } catch (const std::regex_error&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 struct LcmBus::Impl {
     explicit Impl(const std::string& url) : lcm(url) {}
     std::vector<std::unique_ptr<Subscriber>> subscribers;
+    std::vector<std::unique_ptr<ChannelSubscriber>> channel_subscribers;
     lcm::LCM lcm;
 };
 
@@ -108,6 +132,21 @@ void LcmBus::subscribe(std::string_view channel, Handler handler) {
     subscriber->handler = std::move(handler);
     if (auto* subscription = impl_->lcm.subscribe(std::string(channel), &Subscriber::receive, subscriber.get()))
         subscription->setQueueCapacity(subscription_queue);
+}
+
+bool LcmBus::subscribe_matching(const std::string& pattern, int room, ChannelHandler handler) {
+    if (!is_regular_expression(pattern)) return false;
+    auto& subscriber = impl_->channel_subscribers.emplace_back(std::make_unique<ChannelSubscriber>());
+    subscriber->handler = std::move(handler);
+    auto* subscription = impl_->lcm.subscribe(pattern, &ChannelSubscriber::receive, subscriber.get());
+    if (subscription == nullptr) return false;
+    subscription->setQueueCapacity(room);
+    return true;
+}
+
+int LcmBus::wait(Duration patience, int most) {
+    const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
+    return impl_->lcm.handleTimeout(static_cast<int>(ms)) > 0 ? 1 + poll(most - 1) : 0;
 }
 
 int LcmBus::poll(int most) {

@@ -1,9 +1,16 @@
 #pragma once
 // The message bus over LCM. Service side only. With subscriptions LCM runs a receiving thread of its own; publishing alone does not.
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
+#include <string>
+#include <string_view>
 
 #include "core/result.hpp"
+#include "core/time.hpp"
 #include "hmi_bridge/lcm/lcm_url.hpp"
 #include "hmi_bridge/lcm/message_bus.hpp"
 
@@ -18,6 +25,14 @@ public:
     bool publish(std::string_view channel, std::span<const std::byte> message) override;
     void subscribe(std::string_view channel, Handler handler) override;
     int poll(int most) override;
+
+    /// `received`: us since 1970, by LCM.
+    using ChannelHandler = std::function<void(std::string_view channel, std::span<const std::byte> message, std::int64_t received)>;
+    /// Every channel whose whole name this regular expression (GLib's) is. `room`: messages that wait; what comes beyond it LCM drops without a word. Before the first
+    /// poll(). False: it is no regular expression.
+    [[nodiscard]] bool subscribe_matching(const std::string& pattern, int room, ChannelHandler handler);
+    /// As poll(), and waits for the first message up to `patience`.
+    int wait(Duration patience, int most);
 
 private:
     struct Impl;

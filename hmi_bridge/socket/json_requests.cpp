@@ -14,6 +14,7 @@
 #include "core/nearest_name.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/answer_line.hpp"
+#include "hmi_bridge/socket/json_history.hpp"
 #include "hmi_bridge/socket/json_measure.hpp"
 #include "hmi_bridge/socket/json_state.hpp"
 #include "hmi_bridge/socket/peer_name.hpp"
@@ -23,7 +24,7 @@
 namespace taktwerk::hmi {
 namespace {
 
-constexpr std::array<std::string_view, 7> questions{"hello", "layout", "state", "alarms", "simulate", "measure_plan", "measure_result"};
+constexpr std::array<std::string_view, 8> questions{"hello", "layout", "state", "alarms", "alarm_history", "simulate", "measure_plan", "measure_result"};
 struct DriveWord {
     std::string_view word;
     DriveRequestKind kind;
@@ -208,6 +209,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         return;
     }
     if (MachineQuestions::knows(cmd)) return questions_.ask(cmd, connection, id_text, fields, snapshot_, now);
+    if (cmd == "alarm_history") return ask_history(connection, id_text, fields, now);
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
     if (answer_measure(cmd, connection, id_text, fields)) return;
@@ -289,6 +291,16 @@ bool JsonRequests::answer_measure(std::string_view cmd, ConnectionId connection,
     return with(result_json(*run, *config, window));
 }
 
+void JsonRequests::ask_history(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
+    auto query = read_history_query(fields);
+    if (!query) return refuse(connection, id, query.error());
+    if (history_ == nullptr)
+        return refuse(connection, id,
+                      {"history.off", machine_.layout().machine, "this machine keeps no alarm history",
+                       "Give it rows: `history: {rows: 10000}` in the machine file."});
+    history_->ask(connection, id, std::move(*query), now);
+}
+
 void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
     DriveRequest request;
     request.kind = kind;
@@ -322,6 +334,12 @@ void JsonRequests::step(Instant now) {
     }
     drives_.step(now);
     measurements_.step(snapshot_);
+    while (history_ != nullptr) {
+        const auto done = history_->next_answer(now);
+        if (!done) break;
+        if (!done->page) refuse(done->tag, done->id, done->page.error());
+        else answer(done->tag, history_line(done->id, *done->page));
+    }
     while (const auto done = drives_.next_answer()) {
         if (done->error) {
             refuse(done->tag, done->id, *done->error);

@@ -21,6 +21,7 @@
 #include "hmi_bridge/gateway/drive_requests.hpp"
 #include "hmi_bridge/gateway/gateway.hpp"
 #include "hmi_bridge/gateway/measurements.hpp"
+#include "hmi_bridge/history/alarm_history.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/json_fields.hpp"
 #include "hmi_bridge/socket/machine_questions.hpp"
@@ -47,6 +48,8 @@ public:
     void set_simulate(Simulate simulate) { simulate_ = std::move(simulate); }
     /// Recordings around alarms; outlives this. Without one there are none.
     void set_recorder(runtime::FlightRecorder* recorder) noexcept { scope_.set_recorder(recorder); }
+    /// For "alarm_history"; outlives this. nullptr: none is kept.
+    void set_history(AlarmHistory* history) noexcept { history_ = history; }
 
     /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
@@ -69,7 +72,7 @@ public:
     void on_request(ConnectionId connection, std::string_view line, Instant now, const Arrival& arrival) override;
     void on_close(ConnectionId connection) override;
 
-    /// What drives have answered becomes lines.
+    /// What drives and the alarm history have answered becomes lines.
     void step(Instant now);
     /// A reply of the gateway with Source::socket.
     void deliver(const CommandReply& reply);
@@ -82,6 +85,7 @@ private:
     [[nodiscard]] std::string hello(const std::optional<std::string>& stuck, Instant now) const;
     /// True: the request asked about a measurement and is answered.
     bool answer_measure(std::string_view cmd, ConnectionId connection, const std::string& id, JsonFields& fields);
+    void ask_history(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 
     Gateway& gateway_;
@@ -96,6 +100,7 @@ private:
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;
     Simulate simulate_;
+    AlarmHistory* history_ = nullptr;
     std::map<ConnectionId, ClientId> clients_;
     std::map<ClientId, ConnectionId> connections_;
     std::map<ConnectionId, std::string> names_;

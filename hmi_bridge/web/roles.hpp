@@ -25,6 +25,7 @@ inline constexpr std::array command_rules{
     CommandRule{"layout", Role::viewer, false},
     CommandRule{"state", Role::viewer, false},
     CommandRule{"alarms", Role::viewer, false},
+    CommandRule{"alarm_history", Role::viewer, false},
     CommandRule{"measure", Role::engineer, true},
     CommandRule{"measure_plan", Role::viewer, false},
     CommandRule{"measure_result", Role::viewer, false},

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "hmi_bridge/history/alarm_history.hpp"
 #include "hmi_bridge/socket/json_requests.hpp"
 #include "runtime/recording/signal_ring.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
@@ -43,6 +44,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     machine.rows = &rows();
     Gateway gateway(machine);
     JsonRequests requests(gateway, machine, [] { return std::int64_t{1'800'000'000'000'000}; });
+    AlarmHistory history(
+        "/nowhere/alarms.sqlite", 10, [&](const AlarmFact& fact) { return machine.describe(fact); }, nullptr);
+    requests.set_history(&history);
     gateway.observe(true);
     requests.observe(&machine.snapshot);
     runtime::CycleHistograms cycle;
@@ -77,7 +81,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         gateway.step(now);
         requests.step(now);
         while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
-        requests.step(now);  // one is enough for so few rows
+        history.work(now);
+        requests.step(now);
         int answers = 0;
         while (const auto line = requests.next_line()) {
             if (++answers > 1 || !nlohmann::json::accept(line->text) || line->text.find('\n') != std::string::npos) std::abort();

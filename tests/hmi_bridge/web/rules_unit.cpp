@@ -26,6 +26,7 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
                                                       {"layout", "yyyy"},
                                                       {"state", "yyyy"},
                                                       {"alarms", "yyyy"},
+                                                      {"alarm_history", "yyyy"},
                                                       {"measure", "nnyy"},
                                                       {"measure_plan", "yyyy"},
                                                       {"measure_result", "yyyy"},
