@@ -31,10 +31,12 @@ enum class CommandKind : std::int32_t {
     set_output,
     acknowledge,
     shutdown,
+    set_value,
 };
 
 /// What a command acts on. `_or_all`: also "all".
-enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output };
+/// `variable`: of a program, one that people may write.
+enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output, variable };
 
 struct CommandWord {
     CommandKind kind;
@@ -45,7 +47,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 17> command_words{{
+inline constexpr std::array<CommandWord, 18> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -69,6 +71,8 @@ inline constexpr std::array<CommandWord, 17> command_words{{
      "only while no program runs, not in automatic mode"},
     {CommandKind::acknowledge, "acknowledge", runtime::OperatorAction::acknowledge_alarms, TargetKind::none, "", "", "all alarms"},
     {CommandKind::shutdown, "shutdown", runtime::OperatorAction::shutdown, TargetKind::none, "", "", "stop the axes, power off, end"},
+    {CommandKind::set_value, "set_value", runtime::OperatorAction::set_value, TargetKind::variable, "value", "",
+     "of a program that declares it for people; a button: press once, renew each 50 ms, value 0 lets go"},
 }};
 
 namespace command_word_check {
@@ -76,7 +80,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::shutdown) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::set_value) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

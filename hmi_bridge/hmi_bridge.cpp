@@ -54,6 +54,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       door_(machine, std::move(server), options.log),
       door_thread_(options.door) {
     requests_.set_simulate(std::move(options.simulate));
+    requests_.set_views(std::move(options.views));
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);

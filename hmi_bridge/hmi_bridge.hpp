@@ -40,6 +40,7 @@ struct HmiOptions {
     std::function<std::int64_t()> wall_utime = hmi::wall_utime;  ///< us since 1970; tests give their own
     std::unique_ptr<MessageBus> bus;                             ///< instead of the configured LCM: tests
     DoorThread door = DoorThread::service;
+    ViewAnswers views{};                ///< the machine builder's own pages
     JsonRequests::Simulate simulate{};  ///< hands on a simulated machine; empty: it is real
 };
 

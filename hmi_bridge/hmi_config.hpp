@@ -9,6 +9,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "hmi_bridge/modbus_server_config.hpp"
+#include "hmi_bridge/view_config.hpp"
 
 namespace taktwerk::hmi {
 
@@ -27,6 +28,7 @@ struct HmiConfig {
         socket_group;    ///< group of the socket: besides the runtime's own user (and root) its members command; empty: the process' group
     std::string socket;  ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
     std::optional<ModbusServerConfig> modbus_server;  ///< nothing: no Modbus client is served
+    std::vector<View> views{};                        ///< the machine builder's own pages
 };
 
 [[nodiscard]] std::vector<Error> check(const HmiConfig& config);

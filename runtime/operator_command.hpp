@@ -45,6 +45,12 @@ enum class OperatorAction : std::uint8_t {
     acknowledge_alarms,
     shutdown,         ///< stop axes, power off, end
     release_outputs,  ///< those that this client has set go to their safe values: it is gone
+    set_value,        ///< index = variable of the layout that people may write; value within its range, whole where it takes nothing else
+                      ///< [unknown_name for any other; bad_value]. A button: value 1 with flag = pressed, without: a heartbeat, each 50 ms,
+                      ///< renews the lease [stale when there is nothing to renew]; 0 = let go, by whomever, always. A press [no_control
+                      ///< while another client holds it; not_possible_now while its program does not run]. A press and a switch put on
+                      ///< [interlocked while the emergency stop holds]; a press given before a stop of one of its program's axes is stale
+    release_values,   ///< buttons that this client holds: it is gone
 };
 
 /// One command. Trivially copyable: goes through a ring.

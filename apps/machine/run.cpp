@@ -34,6 +34,7 @@
 #include "ecat/ring/bus_interfaces.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "hmi_bridge/views/view_answers.hpp"
 #include "modbus/line/tty_line.hpp"
 #include "modbus/tcp/tcp_exchange.hpp"
 #include "runtime/alarms.hpp"
@@ -241,6 +242,12 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         world->also = [&hands](Instant now) { hands->step(now); };
         bridge_options.simulate = [&hands](const std::string& line) { return hands->ask(line); };
     }
+    auto views = hmi::ViewAnswers::make(hmi_config.views, hmi::view_values_of(machine.config(), machine.layout()));
+    if (!views) {
+        print_error(views.error());
+        return exit_bad_file;
+    }
+    bridge_options.views = std::move(views).value();
     auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());

@@ -28,6 +28,8 @@ std::string with_unit(double value, std::string_view unit) { return fmt::format(
 Error bad_value(std::string what, std::string remedy) { return {"command.bad_value", "", std::move(what), std::move(remedy)}; }
 
 bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
+/// Of a button, or a switch that is put off: never too late either, but in its turn.
+bool puts_off(const CommandRequest& request) noexcept { return request.kind == CommandKind::set_value && request.value == 0; }
 
 /// Since it was given, as far as anybody knows: by the client's clock, and by how long it has waited here, whichever is longer.
 Duration age_of(const CommandRequest& request, Instant now) {
@@ -43,6 +45,18 @@ std::optional<Error> check_jog_velocity(const runtime::MachineLayout::AxisInfo& 
         return bad_value(fmt::format("{:g} {}/s is faster than this axis may jog", velocity, axis.unit),
                          fmt::format("Give at most {:g} {}/s.", axis.jog_fast, axis.unit));
     return std::nullopt;
+}
+
+std::optional<Error> check_value(const runtime::MachineLayout::Variable& variable, const CommandRequest& request) {
+    if (request.press && !variable.momentary)
+        return bad_value("only a button is pressed, and this is none", "Leave `press` out: the value stays until it is written again.");
+    if (variable.takes(request.value)) return std::nullopt;
+    if (variable.type == VariableType::boolean) return bad_value(fmt::format("{:g} is neither off nor on", request.value), "Give 0 or 1.");
+    if (request.value < variable.minimum || request.value > variable.maximum)
+        return bad_value(fmt::format("{} is outside its range", with_unit(request.value, variable.unit)),
+                         fmt::format("Give {:g} to {}.", variable.minimum, with_unit(variable.maximum, variable.unit)));
+    return bad_value(fmt::format("{:g} is not a whole number, and the program counts with it", request.value),
+                     fmt::format("Give {:g} or {:g}.", std::floor(request.value), std::ceil(request.value)));
 }
 
 /// Numbers that mean something for this command, in its range.
@@ -70,6 +84,7 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
                                  fmt::format("Give {:g} or {:g}.", std::floor(request.value), std::ceil(request.value)));
             return std::nullopt;
         }
+        case CommandKind::set_value: return check_value(layout.variables[command.index], request);
         case CommandKind::set_output:
             // What has a unit is no word: the machine knows how far its line goes (IoImage::fits).
             if (command.index < layout.output_units.size() && !layout.output_units[command.index].empty()) return std::nullopt;
@@ -128,13 +143,25 @@ std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request
             Answer::stale,
             {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
              "Set the clocks right; a command's age cannot be judged."}};
-    if (const auto age = age_of(request, now); age > request.valid_for)
+    if (const auto age = age_of(request, now); age > validity_of(request))
         return Refusal{Answer::stale,
                        {"command.stale", "",
                         fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out", milliseconds(age),
-                                    milliseconds(request.valid_for)),
+                                    milliseconds(validity_of(request))),
                         "Give it again; if it comes back, the connection or this computer is too slow."}};
     return std::nullopt;
+}
+
+bool Gateway::is_button(const CommandRequest& request) const {
+    if (request.kind != CommandKind::set_value) return false;
+    const auto& layout = machine_.layout();
+    const auto variable = find_target(layout, TargetKind::variable, request.target);
+    return variable && layout.variables[*variable].momentary;
+}
+
+// Of a button no longer than of a jog: an old press is not what the hand does now.
+Duration Gateway::validity_of(const CommandRequest& request) const {
+    return is_button(request) ? std::min(request.valid_for, longest_jog_validity) : request.valid_for;
 }
 
 std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request, const OperatorCommand& command, Instant now) const {
@@ -169,7 +196,8 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     command.action = word->action;
     command.client = request.client;
     command.sequence = request.sequence;
-    command.flag = request.kind == CommandKind::enable || (request.kind == CommandKind::jog && request.press);
+    const bool pressed = request.press && (request.kind == CommandKind::jog || request.kind == CommandKind::set_value);
+    command.flag = request.kind == CommandKind::enable || pressed;
     command.mode = request.mode;
     command.value = request.value;
     command.value2 = request.value2;
@@ -193,7 +221,8 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     const bool axis = word->target == TargetKind::axis || word->target == TargetKind::axis_or_all;
     (axis ? command.axis : command.index) = *target;
 
-    auto refusal = lets_go(request) ? std::nullopt : check_age(request, now);  // that is never too late
+    const bool never_late = lets_go(request) || puts_off(request);
+    auto refusal = never_late ? std::nullopt : check_age(request, now);
     if (!refusal)
         if (auto error = check_values(*word, request, command, machine_.layout())) refusal = Refusal{Answer::bad_value, std::move(*error)};
     if (!refusal) refusal = check_jog(request, command, now);
@@ -206,7 +235,7 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                            "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
     if (refusal && refusal->error.subject.empty())
         refusal->error.subject = subject_of(machine_.layout(), word->target, command.axis, command.index);
-    command.expires = now + (request.valid_for - age_of(request, now));
+    command.expires = puts_off(request) ? Instant{} : now + (validity_of(request) - age_of(request, now));
     command.after = request.arrival.after;
     return refusal;
 }
@@ -284,6 +313,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     }
     entry->state = Entry::State::waiting;
     client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
+    client.wrote_values = client.wrote_values || (request.kind == CommandKind::set_value && request.press);
     if (request.kind == CommandKind::jog) jogs_[command.axis] = {request.client, now};
 }
 
@@ -336,7 +366,7 @@ void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
 
 void Gateway::step(Instant now) {
     now_ = now;
-    release_outputs();
+    send_endings();
     settle_levels(now);
     while (const auto answer = machine_.next_answer()) {
         const auto client = clients_.find(answer->client);

@@ -39,8 +39,10 @@ std::string Gateway::deed(const CommandRequest& request) const {
     if (request.kind == CommandKind::move && axis)
         text += fmt::format(" to {:g} {} at {:g} {}/s", request.value, layout.axes[*axis].unit, request.value2, layout.axes[*axis].unit);
     if (request.kind == CommandKind::mode) text += fmt::format(" {}", hmi::word(request.mode));
-    if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output)
+    if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output || request.kind == CommandKind::set_value)
         text += fmt::format(" = {:g}", request.value);
+    if (request.kind == CommandKind::set_value && place < layout.variables.size() && !layout.variables[place].unit.empty())
+        text += " " + layout.variables[place].unit;
     if (request.kind == CommandKind::set_parameter && place < layout.parameters.size()) text += " " + layout.parameters[place].unit;
     return request.commissioning ? text + ", as commissioning" : text;
 }
@@ -64,7 +66,8 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
             default: break;
         }
     }
-    if (request.kind == CommandKind::jog && axis) {  // begin and end, not what keeps it alive
+    if (request.value != 0 && !request.press && is_button(request)) return;  // a renewal
+    if (request.kind == CommandKind::jog && axis) {                          // begin and end, not what keeps it alive
         if (request.value == 0 && told_jogs_.erase(*axis) == 0) return;
         if (request.value != 0 && !request.press) return;
         if (request.value != 0) told_jogs_[*axis] = id;
@@ -86,20 +89,22 @@ void Gateway::note_end(ClientId id, const Client& client) {
                    now_);
         jog = told_jogs_.erase(jog);
     }
-    if (!client.set_outputs) return;
-    deeds_.say(client.name, "is gone: outputs that it was the last to set go to their safe values", now_);
-    leave_outputs_.push_back(id);
-    release_outputs();
+    const auto end = [&](OperatorAction what) {
+        OperatorCommand command;
+        command.action = what;
+        command.client = id;
+        endings_.push_back(command);
+    };
+    if (client.wrote_values) end(OperatorAction::release_values);
+    if (client.set_outputs) {
+        deeds_.say(client.name, "is gone: outputs that it was the last to set go to their safe values", now_);
+        end(OperatorAction::release_outputs);
+    }
+    send_endings();
 }
 
-void Gateway::release_outputs() {
-    while (!leave_outputs_.empty()) {
-        OperatorCommand release;
-        release.action = OperatorAction::release_outputs;
-        release.client = leave_outputs_.front();
-        if (!machine_.submit(release)) return;  // the inbox is full: again in the next step
-        leave_outputs_.pop_front();
-    }
+void Gateway::send_endings() {
+    while (!endings_.empty() && machine_.submit(endings_.front())) endings_.pop_front();  // a full inbox: again in the next step
 }
 
 }  // namespace taktwerk::hmi

@@ -22,7 +22,7 @@
 namespace taktwerk::hmi {
 namespace {
 
-constexpr std::array<std::string_view, 5> questions{"hello", "layout", "state", "alarms", "simulate"};
+constexpr std::array<std::string_view, 7> questions{"hello", "layout", "state", "alarms", "simulate", "views", "view_image"};
 struct DriveWord {
     std::string_view word;
     DriveRequestKind kind;
@@ -100,6 +100,7 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
         request.press = fields.flag("press");
         request.valid_for = std::chrono::milliseconds{250};
     }
+    if (entry.kind == CommandKind::set_value) request.press = fields.flag("press");
     std::optional<Error> mode_error;
     if (entry.kind == CommandKind::mode) {
         const auto wanted = fields.text("mode", true);
@@ -191,6 +192,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
 
     fields.integer("utime");
     const auto happening = cmd == "simulate" ? fields.text("line", true) : std::string{};
+    const auto image = cmd == "view_image" ? fields.text("image", true) : std::string{};
     fields.finish();
     if (fields.error()) return refuse(connection, id_text, *fields.error());
     if (cmd == "simulate") {
@@ -216,6 +218,8 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
                                            {"progress", stuck ? *stuck : progress_}};
         return with("hello", hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
+    if (cmd == "views") return with("views", views_.views());
+    if (cmd == "view_image") return answer_image(connection, id_text, image);
     if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
     if (!snapshot_)
         return refuse(connection, id_text,
@@ -226,6 +230,14 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         return refuse(connection, id_text, {"state.stuck", "", *stuck, "Use the emergency stop; end the runtime and mend that program."});
     if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
     with("alarms", alarms_json(*snapshot_, machine_));
+}
+
+void JsonRequests::answer_image(ConnectionId connection, const std::string& id, const std::string& name) {
+    if (const auto members = views_.image(name)) return answer(connection, fmt::format(R"({{"id":{},"ok":true,{}}})", id, *members));
+    const auto near = nearest_name(name.substr(0, 64), views_.images());
+    refuse(connection, id,
+           {"view.no_image", "", fmt::format("no view of this machine shows the picture {}", shown(name)),
+            near.empty() ? "Ask \"views\" for their names." : fmt::format("Did you mean '{}'?", near)});
 }
 
 void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {

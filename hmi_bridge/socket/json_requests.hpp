@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/time.hpp"
 #include "hmi_bridge/gateway/drive_requests.hpp"
@@ -21,6 +22,7 @@
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/json_fields.hpp"
 #include "hmi_bridge/socket/scope_requests.hpp"
+#include "hmi_bridge/views/view_answers.hpp"
 
 namespace taktwerk::hmi {
 
@@ -42,6 +44,9 @@ public:
     /// Without one the machine is real, and the request is refused.
     void set_simulate(Simulate simulate) { simulate_ = std::move(simulate); }
 
+    /// The machine builder's own pages; without them there are none.
+    void set_views(ViewAnswers views) { views_ = std::move(views); }
+
     /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
     /// One line about how the start is getting on, for "hello" and "state".
@@ -62,6 +67,7 @@ private:
     void refuse(ConnectionId connection, const std::string& id, const Error& error);
     void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text), {}}); }
 
+    void answer_image(ConnectionId connection, const std::string& id, const std::string& name);
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 
     Gateway& gateway_;
@@ -72,6 +78,7 @@ private:
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;
     Simulate simulate_;
+    ViewAnswers views_;
     std::map<ConnectionId, ClientId> clients_;
     std::map<ClientId, ConnectionId> connections_;
     std::map<ConnectionId, std::string> names_;

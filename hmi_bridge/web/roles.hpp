@@ -34,7 +34,8 @@ inline constexpr std::array command_rules{
     CommandRule{"set_output", Role::engineer, true},   CommandRule{"simulate", Role::engineer, true},
     CommandRule{"drive_write", Role::engineer, true},  CommandRule{"drive_store", Role::engineer, true},
     CommandRule{"shutdown", Role::admin, true},        CommandRule{"scope_signals", Role::viewer, false},
-    CommandRule{"scope_read", Role::viewer, false},
+    CommandRule{"scope_read", Role::viewer, false},    CommandRule{"views", Role::viewer, false},
+    CommandRule{"view_image", Role::viewer, false},    CommandRule{"set_value", Role::operates, true},
 };
 
 /// Whose answers may be long: they come over a connection of their own, so that they delay neither a stop nor the renewal of a jog.

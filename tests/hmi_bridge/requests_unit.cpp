@@ -84,7 +84,8 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
                                          R"("cmd":"set_parameter","parameter":"speed","value":100)",
                                          R"("cmd":"set_output","output":"lamp_run","value":true)",
                                          R"("cmd":"acknowledge")",
-                                         R"("cmd":"shutdown")"};
+                                         R"("cmd":"shutdown")",
+                                         R"("cmd":"set_value","variable":"cell.start","value":1,"press":true)"};
     ASSERT_EQ(lines.size(), command_words.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const auto answer = ask("{\"id\":" + std::to_string(i + 1) + "," + lines[i] + "}");

@@ -29,7 +29,8 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
         {"jog", "nyyy"},          {"move", "nyyy"},          {"reset", "nyyy"},        {"program_start", "nyyy"},
         {"program_stop", "nyyy"}, {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
         {"set_output", "nnyy"},   {"simulate", "nnyy"},      {"drive_write", "nnyy"},  {"drive_store", "nnyy"},
-        {"shutdown", "nnny"},     {"scope_signals", "yyyy"}, {"scope_read", "yyyy"}};
+        {"shutdown", "nnny"},     {"scope_signals", "yyyy"}, {"scope_read", "yyyy"},   {"views", "yyyy"},
+        {"view_image", "yyyy"},   {"set_value", "nyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
