@@ -24,16 +24,27 @@ std::string lower_case(std::string_view text) {
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// " onload=": an attribute that runs.
+/// " onload=" in a tag, outside of its quoted values: an attribute that runs.
 bool has_handler(std::string_view text) {
-    for (std::size_t at = 0; (at = text.find("on", at)) != std::string_view::npos; ++at) {
-        const char before = at == 0 ? ' ' : text[at - 1];
-        if (!is_space(before) && before != '"' && before != '\'' && before != '/') continue;
-        std::size_t end = at + 2;
-        while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
-        const bool named = end > at + 2;
-        while (end < text.size() && is_space(text[end])) ++end;
-        if (named && end < text.size() && text[end] == '=') return true;
+    bool in_tag = false;
+    char quote = 0;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (quote != 0) {
+            if (c == quote) quote = 0;
+        } else if (!in_tag) {
+            in_tag = c == '<';
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '>') {
+            in_tag = false;
+        } else if (c == 'o' && text.substr(at, 2) == "on" &&
+                   (is_space(text[at - 1]) || text[at - 1] == '/' || text[at - 1] == '"' || text[at - 1] == '\'')) {
+            std::size_t end = at + 2;
+            while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
+            while (end < text.size() && is_space(text[end])) ++end;
+            if (end < text.size() && text[end] == '=') return true;
+        }
     }
     return false;
 }

@@ -122,6 +122,7 @@ public:
         if (start_pressed_.Q && step_ == waiting) {
             wanted_ = true;
             stop_at_end_ = false;
+            if (pieces_wanted_ > 0 && pieces_ >= pieces_wanted_) pieces_ = 0;  // the next batch
         }
         if (error) wanted_ = false;            // that press resets
         if (error || !ready) step_ = waiting;  // whatever was moving has been stopped by its axis
