@@ -77,7 +77,7 @@ Codec<std::vector<ViewName>> value_names() {
         if (node.items.empty() || node.items.size() > most_in_a_trend) {
             reader.problem(node.at, "view.too_much",
                            fmt::format("a trend shows 1 to {} values, and this has {}", most_in_a_trend, node.items.size()),
-                           "make two trends of it");
+                           node.items.empty() ? "name a value" : "make two trends of it");
             return false;
         }
         bool good = true;
@@ -231,7 +231,7 @@ Table<View> view_table() {
     rows.read = [read = std::move(rows.read)](Reader& reader, const Node& node, std::vector<Row>& out) {
         if (node.kind == Node::Kind::list && (node.items.empty() || node.items.size() > most_rows)) {
             reader.problem(node.at, "view.too_much", fmt::format("a view has 1 to {} rows, and this has {}", most_rows, node.items.size()),
-                           "make several views of it");
+                           node.items.empty() ? "add a row, or remove the view" : "make several views of it");
             return false;
         }
         return read(reader, node, out);

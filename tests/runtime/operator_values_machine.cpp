@@ -342,7 +342,7 @@ public:
         if (Case == 0) d.operator_value("v", real_, {.minimum = 10, .maximum = 20});
         if (Case == 1) d.operator_value("v", real_, {});
         if (Case == 2) d.operator_value("v", whole_, {.minimum = 0, .maximum = 1e12});
-        if (Case == 3) d.operator_value("v", real_, {.minimum = 0, .maximum = 20, .task = "mian"});
+        if (Case == 3) d.operator_value("v", real_, {.minimum = 0, .maximum = 20, .task = "mainn"});
         if (Case == 4) {
             d.operator_value("v", real_, {.minimum = 0, .maximum = 20});
             d.task<&Misdeclared::scan>("second");

@@ -91,8 +91,11 @@ private:
         }
         // Over by its lease at the same time as this came: either is right, as long as it is one of them.
         if (answer != Answer::accepted) return;
-        if (!press) EXPECT_TRUE(rules_.holder == client) << "a renewal of what nobody of his holds";
-        if (press) EXPECT_TRUE(!rules_.holder || rules_.holder == client || now() - rules_.heard > 190ms) << "out of another's hand";
+        if (press) {
+            EXPECT_TRUE(!rules_.holder || rules_.holder == client || now() - rules_.heard > 190ms) << "out of another's hand";
+        } else {
+            EXPECT_TRUE(rules_.holder == client) << "a renewal of what nobody of his holds";
+        }
         rules_.holder = client;
         rules_.heard = now();
     }
@@ -155,9 +158,13 @@ private:
         if (rules_.holder && now() - rules_.heard > 200ms) rules_.let_go();
         // What its scans see is at most a run of its task older than the rules.
         if (!rules_.holder) m_.run(std::chrono::milliseconds{2 * divisor_ + 1});
-        if (!rules_.holder) EXPECT_EQ(variable(m_, "button"), 0);
+        if (!rules_.holder) {
+            EXPECT_EQ(variable(m_, "button"), 0);
+        }
         const double number = variable(m_, "number");
-        if (divisor_ == 1 || !running()) EXPECT_EQ(number, number_);
+        if (divisor_ == 1 || !running()) {
+            EXPECT_EQ(number, number_);
+        }
     }
 
     std::uint16_t divisor_ = 1;

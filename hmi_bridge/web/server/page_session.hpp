@@ -159,7 +159,7 @@ private:
                          fmt::format("it took {} ms to arrive: nobody knows whether it is still wanted", waited_ / 1ms),
                          "Give it again; if this stays, reload the page and look at the network."};
         }
-        const bool lets_go = message.is_held() && !message.may_move();
+        const bool lets_go = message.rule->moves && !message.may_move();
         if (waiting() >= most_waiting && !lets_go)
             return Error{"web.busy", command, "too many commands of this page wait for the machine", "Wait for their answers."};
         return std::nullopt;

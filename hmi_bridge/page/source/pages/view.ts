@@ -5,18 +5,27 @@ import { element } from '../view';
 import { Widget } from '../views/widget';
 import { widget_of } from '../views/widgets';
 
+const columns = 12;
+/** How many of the columns each widget takes: what it asks for; those that ask for nothing share what is left, the first ones what does not divide. */
+export function spans_of(widths: readonly (number | undefined)[]): number[] {
+    const open = widths.filter((width) => width === undefined).length;
+    const left = Math.max(open, columns - widths.reduce<number>((sum, width) => sum + (width ?? 0), 0));
+    let place = 0;
+    return widths.map((width) => width ?? Math.floor(left / open) + (place++ < left % open ? 1 : 0));
+}
+
 export function builder_view(desk: Desk, rest: readonly string[]): Page {
     const view = desk.views.find(rest[0]);
     const root = element('div', { class: 'page view' });
     const widgets: Widget[] = [];
     for (const row of view?.rows ?? []) {
-        const line = element('div', { class: 'view-row' });
-        for (const layout of row) {
+        const line = element('div', { class: 'view-row' }), spans = spans_of(row.map((layout) => layout.width));
+        row.forEach((layout, i) => {
             const widget = widget_of(layout.kind)(desk, layout);
-            if (layout.width !== undefined) widget.root.style.flex = `${layout.width} ${layout.width} ${((layout.width / 12) * 100 - 2).toFixed(1)}%`;
+            widget.root.style.gridColumn = `span ${spans[i] ?? columns}`;
             widgets.push(widget);
             line.append(widget.root);
-        }
+        });
         root.append(line);
     }
     if (!view) root.append(element('p', { class: 'hint' }, say('view_none')));

@@ -36,9 +36,9 @@ export const alarms_widget: MakeWidget = (desk, layout) => {
     const reset = desk.button('reset_all', () => ({ cmd: 'reset' }), 'primary');
     const rows = new Rows(list, (alarm: Alarm) => `${alarm.source}/${alarm.name}`, (alarm) => {
         const text = element('span');
-        return { root: element('li', {}, element('a', { href: '#alarms' }, element('b', {}, `⚠ ${alarm.source}: `), text)), text };
+        return { root: element('li', {}, element('a', { href: '#alarms', title: in_words(alarm) }, element('b', {}, `⚠ ${alarm.source}: `), text)), text };
     }, (row, alarm) => write(row.text, in_words(alarm)));
-    const root = boxed({ ...layout, label: layout.label }, 'alarms', calm, list, element('div', { class: 'buttons' }, reset));
+    const root = boxed(layout, 'alarms', calm, element('div', { class: 'alarm-line' }, list, reset));
     return {
         root,
         update(state) {

@@ -1,12 +1,12 @@
 // The last seconds of some values as curves: every cycle, from the machine's recorder; from a machine without one, what the page itself has seen.
 import { Desk } from '../desk';
 import { colour_of, is_dark } from '../scope/colours';
-import { time_text } from '../scope/cursors';
 import { LaneChart } from '../scope/lane_chart';
 import { Live, Reader } from '../scope/pull';
 import { Channel, Signal } from '../scope/signals';
 import { look } from '../scope/stack';
 import { Store } from '../scope/store';
+import { fixed } from '../numbers';
 import { MachineState } from '../state';
 import { element, write } from '../view';
 import { WidgetLayout } from './builder_views';
@@ -134,7 +134,7 @@ class Trend implements Widget {
     private make_chart(): LaneChart {
         const channels: Channel[] = this.names_.map((name, i) => ({ name, offset: 0, hidden: false, colour: i, apart: false }));
         const unit = this.layout_.values?.[0]?.unit ?? '';
-        const chart = new LaneChart({ key: 'trend', unit, digital: false, channels }, look(), true, this.host_, (s, step) => time_text(s, step));
+        const chart = new LaneChart({ key: 'trend', unit, digital: false, channels }, look(), true, this.host_, (s, step) => `${fixed(s, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)))} s`);
         const { minimum, maximum } = this.layout_;
         if (minimum !== undefined && maximum !== undefined) chart.manual = { min: minimum, max: maximum };
         return chart;
