@@ -16,6 +16,7 @@ export const view = {
     view_no_alarm: ['No alarm', '无报警'],
     view_picture: ['Picture of the machine', '机器图'],
     view_unknown_widget: ['This page is older than the machine: it does not know "{kind}".', '页面版本比机器旧:不认识“{kind}”。'],
+    press_ended_slid_off: ['Let go: the finger slid off the button.', '已松开:手指滑出按钮。'],
     press_ended_second_pointer: ['Let go: a second finger or key.', '已松开:第二个触点或按键。'],
     press_ended_blur: ['Let go: the window lost the focus.', '已松开:窗口失去焦点。'],
     press_ended_hidden: ['Let go: the page was hidden.', '已松开:页面被隐藏。'],

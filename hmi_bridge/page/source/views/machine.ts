@@ -1,6 +1,6 @@
 // Widgets of a whole thing of the machine: an axis, what alarms stand.
 import { write_state } from '../desk';
-import { in_words } from '../pages/alarms';
+import { in_words } from '../alarm_words';
 import { fixed } from '../numbers';
 import { Ruler } from '../axis/ruler';
 import { say, word } from '../texts';
