@@ -1,5 +1,5 @@
 // What a value is in the newest state, and how it is written for a person.
-import { fixed, plain } from '../numbers';
+import { fixed } from '../numbers';
 import { MachineState, Real, value } from '../state';
 import { Key, say, texts, word } from '../texts';
 import { ShownValue } from './builder_views';
@@ -37,6 +37,12 @@ export function decimals_for(shown: ShownValue, given?: number): number | undefi
     return undefined;
 }
 
+/** Four decimals at most, and no zeros behind the last that matters. */
+export const short = (is: Real): string => {
+    const text = fixed(is, 4);
+    return text.includes('.') ? text.replace(/\.?0+$/, '') : text;
+};
+
 export function text_of(state: MachineState, shown: ShownValue, decimals?: number): string {
     const is = found(state, shown);
     if (is === undefined) return '–';
@@ -46,5 +52,5 @@ export function text_of(state: MachineState, shown: ShownValue, decimals?: numbe
         return Object.hasOwn(texts, `${group}_${String(is)}`) ? say(`${group}_${String(is)}` as Key) : word(group, String(is));
     }
     const places = decimals_for(shown, decimals);
-    return places === undefined ? plain(is as Real) : fixed(is as Real, places);
+    return places === undefined ? short(is as Real) : fixed(is as Real, places);
 }

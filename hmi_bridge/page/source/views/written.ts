@@ -1,12 +1,12 @@
 // Widgets that write: a button that is held, a switch that stays, a number. Each shows what the machine has; what is on its way stands beside it.
 import { Desk } from '../desk';
 import { hold_to_jog } from '../jog';
-import { plain, typed } from '../numbers';
+import { typed } from '../numbers';
 import { MachineState } from '../state';
 import { say } from '../texts';
 import { element, mark, write } from '../view';
 import { ShownValue } from './builder_views';
-import { is_on, number_of, text_of } from './reading';
+import { is_on, number_of, short, text_of } from './reading';
 import { boxed, first_value, label_of, MakeWidget } from './widget';
 
 /** ms: the machine has had time to take it over; what it shows then is its own will. */
@@ -99,7 +99,7 @@ export const set_widget: MakeWidget = (desk: Desk, layout) => {
     const note = element('p', { class: 'hint', 'aria-live': 'polite' });
     const input = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': label_of(layout), 'data-input': shown.name });
     const set = element('button', { type: 'submit', class: 'primary', 'data-cmd': may_write(shown) }, say('set'));
-    const limit = (at: number | undefined) => (at === undefined ? '' : plain(at));
+    const limit = (at: number | undefined) => (at === undefined ? '' : short(at));
     const form = element('form', {
         class: 'line',
         onsubmit: (event: Event) => {
@@ -107,8 +107,8 @@ export const set_widget: MakeWidget = (desk: Desk, layout) => {
             const value = typed(input.value);
             if (Number.isNaN(value)) return desk.tell('refused', say('not_a_number', { text: input.value }));
             if (shown.minimum !== undefined && shown.maximum !== undefined && (value < shown.minimum || value > shown.maximum))
-                return desk.tell('refused', say('view_outside', { value: plain(value), low: limit(shown.minimum), high: limit(shown.maximum), unit: shown.unit }));
-            if (shown.whole && !Number.isInteger(value)) return desk.tell('refused', say('view_whole', { value: plain(value) }));
+                return desk.tell('refused', say('view_outside', { value: short(value), low: limit(shown.minimum), high: limit(shown.maximum), unit: shown.unit }));
+            if (shown.whole && !Number.isInteger(value)) return desk.tell('refused', say('view_whole', { value: short(value) }));
             wish.ask(value);
             void desk.give(request(shown, value)).then((answer) => {
                 if (answer.ok) input.value = '';
@@ -121,7 +121,7 @@ export const set_widget: MakeWidget = (desk: Desk, layout) => {
         root: boxed(layout, 'set', element('div', { class: 'widget-line' }, number, element('span', { class: 'widget-unit' }, shown.unit), element('span', { class: 'widget-range' }, range)), form, note),
         update(state) {
             write(number, text_of(state, shown, layout.decimals));
-            write(note, wish.text(number_of(state, shown), (value) => `${plain(value)} ${shown.unit}`.trim()));
+            write(note, wish.text(number_of(state, shown), (value) => `${short(value)} ${shown.unit}`.trim()));
             desk.permit(set, may_write(shown));
             desk.permit(input, may_write(shown));
         },
