@@ -21,7 +21,7 @@ if(TARGET taktwerk)
 endif()
 foreach(folder drives devices machines)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/${folder}" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
-    FILES_MATCHING PATTERN "*.yaml")
+    FILES_MATCHING PATTERN "*.yaml" PATTERN "*.svg")
 endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/schema" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
   FILES_MATCHING PATTERN "*.json")

@@ -38,10 +38,12 @@ enum class CommandKind : std::int32_t {
     reset_peaks,
     reset_statistics,
     measure,
+    set_value,
 };
 
-/// What a command acts on. `_or_all`: also "all". point: an input or an output, as its request says.
-enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output, input, point };
+/// What a command acts on. `_or_all`: also "all". point: an input or an output, as its request says. variable: of a
+/// program, one that people may write.
+enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output, input, point, variable };
 
 struct CommandWord {
     CommandKind kind;
@@ -52,7 +54,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 24> command_words{{
+inline constexpr std::array<CommandWord, 25> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -89,6 +91,8 @@ inline constexpr std::array<CommandWord, 24> command_words{{
      "maxima and histograms of cycle and tasks begin anew"},
     {CommandKind::measure, "measure", runtime::OperatorAction::measure, TargetKind::axis, "", "",
      "measure while held: press once with what, renew each 50 ms; stop lets go"},
+    {CommandKind::set_value, "set_value", runtime::OperatorAction::set_value, TargetKind::variable, "value", "",
+     "of a program that declares it for people; a button: press once, renew each 50 ms, value 0 lets go"},
 }};
 
 namespace command_word_check {
@@ -96,7 +100,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::measure) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::set_value) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

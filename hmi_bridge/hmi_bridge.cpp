@@ -58,6 +58,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
     requests_.set_about(std::move(options.about));
     requests_.set_log(std::move(options.log_tail));
     requests_.set_recorder(options.recorder);
+    requests_.set_views(std::move(options.views));
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);

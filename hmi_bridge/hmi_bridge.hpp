@@ -42,10 +42,11 @@ struct HmiOptions {
     std::function<std::int64_t()> wall_utime = hmi::wall_utime;  ///< us since 1970; tests give their own
     std::unique_ptr<MessageBus> bus;                             ///< instead of the configured LCM: tests
     DoorThread door = DoorThread::service;
-    runtime::FlightRecorder* recorder = nullptr;                 ///< recordings around alarms; outlives the bridge
-    JsonRequests::Simulate simulate{};          ///< hands on a simulated machine; empty: it is real
-    JsonRequests::About about{};                ///< what runs here, for "hello"
-    std::shared_ptr<const LogTail> log_tail{};  ///< for "log"; may be null
+    ViewAnswers views{};                          ///< the machine builder's own pages
+    runtime::FlightRecorder* recorder = nullptr;  ///< recordings around alarms; outlives the bridge
+    JsonRequests::Simulate simulate{};            ///< hands on a simulated machine; empty: it is real
+    JsonRequests::About about{};                  ///< what runs here, for "hello"
+    std::shared_ptr<const LogTail> log_tail{};    ///< for "log"; may be null
 };
 
 class HmiBridge {

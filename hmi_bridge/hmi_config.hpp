@@ -9,6 +9,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "hmi_bridge/modbus_server_config.hpp"
+#include "hmi_bridge/view_config.hpp"
 
 namespace taktwerk::hmi {
 
@@ -33,6 +34,7 @@ struct HmiConfig {
     std::string socket;  ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
     HistoryConfig history;
     std::optional<ModbusServerConfig> modbus_server;  ///< nothing: no Modbus client is served
+    std::vector<View> views{};                        ///< the machine builder's own pages
 };
 
 [[nodiscard]] std::vector<Error> check(const HmiConfig& config);

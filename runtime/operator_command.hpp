@@ -55,10 +55,16 @@ enum class OperatorAction : std::uint8_t {
     override_velocity,  ///< axis or all; value = 0 to 1, whoever owns it; stays until it is changed [bad_value]
     reset_peaks,        ///< axis or all: the peaks of its following error begin anew
     reset_statistics,   ///< of the cycle and the tasks: maxima and histograms begin anew
-    measure,  ///< axis; flag = the button was pressed: begins what `measure` says. Without it: a heartbeat, as of a jog. One axis of the
-              ///< machine at a time [wrong_mode in automatic; not_possible_now while another is measured; bad_value for an order
-              ///< that gives no path; not_homed where it has software limits, not_at_standstill, beyond_software_limit for the whole
-              ///< path and a stop from it; stale when there is nothing to renew]
+    measure,    ///< axis; flag = the button was pressed: begins what `measure` says. Without it: a heartbeat, as of a jog. One axis of the
+                ///< machine at a time [wrong_mode in automatic; not_possible_now while another is measured; bad_value for an order
+                ///< that gives no path; not_homed where it has software limits, not_at_standstill, beyond_software_limit for the whole
+                ///< path and a stop from it; stale when there is nothing to renew]
+    set_value,  ///< index = variable of the layout that people may write; value within its range, whole where it takes nothing else
+                ///< [unknown_name for any other; bad_value]. A button: value 1 with flag = pressed, without: a heartbeat, each 50 ms,
+                ///< renews the lease [stale when there is nothing to renew]; 0 = let go, by whomever, always. A press [no_control
+                ///< while another client holds it; not_possible_now while its program does not run]. A press and a switch put on
+                ///< [interlocked while the emergency stop holds]; a press given before a stop of one of its program's axes is stale
+    release_values,  ///< buttons that this client holds: it is gone
 };
 
 /// One command. Trivially copyable: goes through a ring.

@@ -95,6 +95,13 @@ struct MachineLayout {
     struct Variable {
         std::string program, name, unit, doc;
         VariableType type = VariableType::real;
+        bool writable = false;            ///< by people (Declaration::operator_value) ...
+        bool momentary = false;           ///< ... a button: TRUE while it is held
+        double minimum = 0, maximum = 0;  ///< of a writable one
+        [[nodiscard]] bool whole() const noexcept { return type != VariableType::real && type != VariableType::duration; }
+        [[nodiscard]] bool takes(double number) const noexcept {  // also not NaN
+            return writable && number >= minimum && number <= maximum && (!whole() || number == std::floor(number));
+        }
     };
     struct ParameterInfo {
         std::string program, name, unit, doc;

@@ -21,6 +21,7 @@
 #include "axes/axis/error_reaction.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/parameter_text.hpp"
+#include "hmi_bridge/views/view_check.hpp"
 #include "runtime/check/drive_hazards.hpp"
 #include "runtime/check/machine_remarks.hpp"
 #include "runtime/machine/machine.hpp"
@@ -255,6 +256,13 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
 }
 
+std::string written_text(const runtime::MachineLayout::Variable& variable) {
+    if (!variable.writable) return "";
+    if (variable.momentary) return "; people press it";
+    if (variable.type == VariableType::boolean) return "; people switch it";
+    return fmt::format("; people write it ({:g} .. {:g})", variable.minimum, variable.maximum);
+}
+
 void print_programs(const MachineConfig& config, const runtime::MachineLayout& layout) {
     if (config.programs.empty()) fmt::print("\nNo program: axes are moved from the command line.\n");
     else fmt::print("\nPrograms\n");
@@ -268,7 +276,7 @@ void print_programs(const MachineConfig& config, const runtime::MachineLayout& l
             if (p.program == program.name)
                 fmt::print("    parameter {:<12} {:g} {} ({:g} .. {:g})  {}\n", p.name, p.value, p.unit, p.minimum, p.maximum, p.doc);
         for (const auto& v : layout.variables)
-            if (v.program == program.name) fmt::print("    variable  {:<12} {} {}\n", v.name, v.unit, v.doc);
+            if (v.program == program.name) fmt::print("    variable  {:<12} {} {}{}\n", v.name, v.unit, v.doc, written_text(v));
     }
 }
 
@@ -394,6 +402,21 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
     return out;
 }
 
+void print_views(const std::vector<hmi::View>& views) {
+    if (!views.empty()) fmt::print("\nPages of its own, for `taktwerk hmi`\n");
+    for (const auto& view : views)
+        fmt::print("  {:<16} {}{}: {}\n", view.name, view.title.english,
+                   view.title.chinese == view.title.english ? "" : " · " + view.title.chinese, hmi::summary_of(view));
+}
+
+Json views_json(const std::vector<hmi::View>& views) {
+    auto out = Json::array();
+    for (const auto& view : views)
+        out.push_back(
+            Json{{"name", view.name}, {"title", {{"en", view.title.english}, {"zh", view.title.chinese}}}, {"rows", view.rows.size()}});
+    return out;
+}
+
 int fail(const CheckOptions& options, const std::vector<Error>& errors) {
     if (options.json) fmt::print("{}\n", Json{{"ok", false}, {"errors", problems_json(errors)}}.dump(2));
     else print_errors(errors);
@@ -416,8 +439,10 @@ int check(const CheckOptions& options) {
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
     const auto& layout = std::get<0>(built)->layout();
     // What programs have is known only now.
-    if (const auto errors = served ? hmi::check(*served, hmi::names_of(layout)) : std::vector<Error>{}; !errors.empty())
-        return fail(options, errors);
+    auto of_programs = served ? hmi::check(*served, hmi::names_of(layout)) : std::vector<Error>{};
+    const auto of_views = hmi::check(loaded.hmi.views, hmi::view_values_of(config, layout));
+    of_programs.insert(of_programs.end(), of_views.begin(), of_views.end());
+    if (!of_programs.empty()) return fail(options, of_programs);
     const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
 
     if (options.json) {
@@ -425,6 +450,7 @@ int check(const CheckOptions& options) {
         const auto& ring = std::get<0>(built)->signals();
         summary["recording"] = Json{{"signals", ring.signals().size()}, {"bytes", ring.bytes()}, {"bytes_a_cycle", ring.words() * 8}};
         if (!config.modbus.empty()) summary["modbus_tcp"] = modbus_asked_json(config.modbus);
+        if (!loaded.hmi.views.empty()) summary["views"] = views_json(loaded.hmi.views);
         if (served) summary["modbus_server"] = modbus_offer_json(*served, hmi::names_of(layout));
         fmt::print("{}\n", summary.dump(2));
         return exit_ok;
@@ -448,6 +474,7 @@ int check(const CheckOptions& options) {
         fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
                    config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
     fmt::print("{}", modbus_asked_text(config.modbus));
+    print_views(loaded.hmi.views);
     if (served) fmt::print("\n{}", modbus_offer_text(*served, hmi::names_of(layout)));
     print_hazards(config);
     print_assumptions(config);

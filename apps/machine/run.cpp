@@ -38,6 +38,7 @@
 #include "hmi_bridge/history/alarm_history.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "hmi_bridge/views/view_answers.hpp"
 #include "modbus/line/tty_line.hpp"
 #include "modbus/tcp/tcp_exchange.hpp"
 #include "runtime/alarms.hpp"
@@ -283,6 +284,12 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     }
     bridge_options.recorder = files.recorder.get();
     link.set_recorder(files.recorder.get());
+    auto views = hmi::ViewAnswers::make(hmi_config.views, hmi::view_values_of(machine.config(), machine.layout()));
+    if (!views) {
+        print_error(views.error());
+        return exit_bad_file;
+    }
+    bridge_options.views = std::move(views).value();
     auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());

@@ -9,6 +9,7 @@
 #include "config/machine_file/bus_tables.hpp"
 #include "config/machine_file/modbus_server_tables.hpp"
 #include "config/machine_file/modbus_tables.hpp"
+#include "config/machine_file/view_tables.hpp"
 #include "config/reading/codecs.hpp"
 #include "config/reading/quantity.hpp"
 #include "config/reading/unit_text.hpp"
@@ -600,6 +601,7 @@ Table<MachineFile> machine_table() {
         "commands_per_cycle", [](F & m) -> auto& { return m.machine.commands_per_cycle; }, integer<std::uint8_t>(1, 64),
         "operator commands taken per cycle"));
     f.push_back(field("hmi", &F::hmi, section(hmi_table()), "state out, commands in"));
+    f.push_back(views_field());
     f.push_back(field_at<F>(
         "simulation", [](F & m) -> auto& { return m.machine.simulation; }, section(simulation_table()), "used when the bus is simulated"));
     return table;

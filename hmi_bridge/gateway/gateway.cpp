@@ -31,6 +31,8 @@ Error bad_value(std::string what, std::string remedy) { return {"command.bad_val
 bool is_held(CommandKind kind) noexcept { return kind == CommandKind::jog || kind == CommandKind::measure; }
 
 bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
+/// Of a button, or a switch that is put off: never too late either, but in its turn.
+bool puts_off(const CommandRequest& request) noexcept { return request.kind == CommandKind::set_value && request.value == 0; }
 
 /// Since it was given, as far as anybody knows: by the client's clock, and by how long it has waited here, whichever is longer.
 Duration age_of(const CommandRequest& request, Instant now) {
@@ -54,6 +56,18 @@ std::optional<Error> check_whole(const std::vector<std::string>& units, std::uin
     if (value != std::floor(value) || std::abs(value) > largest_exact_integer)
         return bad_value(fmt::format("{:g} is not a whole number", value), "Give 0 or 1, or a whole number for a word.");
     return std::nullopt;
+}
+
+std::optional<Error> check_value(const runtime::MachineLayout::Variable& variable, const CommandRequest& request) {
+    if (request.press && !variable.momentary)
+        return bad_value("only a button is pressed, and this is none", "Leave `press` out: the value stays until it is written again.");
+    if (variable.takes(request.value)) return std::nullopt;
+    if (variable.type == VariableType::boolean) return bad_value(fmt::format("{:g} is neither off nor on", request.value), "Give 0 or 1.");
+    if (request.value < variable.minimum || request.value > variable.maximum)
+        return bad_value(fmt::format("{} is outside its range", with_unit(request.value, variable.unit)),
+                         fmt::format("Give {:g} to {}.", variable.minimum, with_unit(variable.maximum, variable.unit)));
+    return bad_value(fmt::format("{:g} is not a whole number, and the program counts with it", request.value),
+                     fmt::format("Give {:g} or {:g}.", std::floor(request.value), std::ceil(request.value)));
 }
 
 /// Numbers that mean something for this command, in its range.
@@ -85,6 +99,7 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
             if (request.value < 0 || request.value > 1)
                 return bad_value(fmt::format("{:g} is no part of a velocity", request.value), "Give 0 (halt) to 1 (as commanded).");
             return std::nullopt;
+        case CommandKind::set_value: return check_value(layout.variables[command.index], request);
         case CommandKind::force:
             if (const auto& kept = request.output ? layout.kept_outputs : layout.kept_inputs;
                 command.index < kept.size() && !kept[command.index].empty())
@@ -155,13 +170,25 @@ std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request
             Answer::stale,
             {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
              "Set the clocks right; a command's age cannot be judged."}};
-    if (const auto age = age_of(request, now); age > request.valid_for)
+    if (const auto age = age_of(request, now); age > validity_of(request))
         return Refusal{Answer::stale,
                        {"command.stale", "",
                         fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out", milliseconds(age),
-                                    milliseconds(request.valid_for)),
+                                    milliseconds(validity_of(request))),
                         "Give it again; if it comes back, the connection or this computer is too slow."}};
     return std::nullopt;
+}
+
+bool Gateway::is_button(const CommandRequest& request) const {
+    if (request.kind != CommandKind::set_value) return false;
+    const auto& layout = machine_.layout();
+    const auto variable = find_target(layout, TargetKind::variable, request.target);
+    return variable && layout.variables[*variable].momentary;
+}
+
+// Of a button no longer than of a jog: an old press is not what the hand does now.
+Duration Gateway::validity_of(const CommandRequest& request) const {
+    return is_button(request) ? std::min(request.valid_for, longest_jog_validity) : request.valid_for;
 }
 
 std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request, const OperatorCommand& command, Instant now) const {
@@ -198,7 +225,8 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     command.client = request.client;
     command.sequence = request.sequence;
     const bool of_a_point = word->target == TargetKind::point;
-    command.flag = request.kind == CommandKind::enable || (is_held(request.kind) && request.press) || (of_a_point && request.output);
+    command.flag = request.kind == CommandKind::enable ||
+                   ((is_held(request.kind) || request.kind == CommandKind::set_value) && request.press) || (of_a_point && request.output);
     command.measure = request.measure;
     command.mode = request.mode;
     command.value = request.value;
@@ -225,7 +253,8 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     const bool axis = kind == TargetKind::axis || kind == TargetKind::axis_or_all;
     (axis ? command.axis : command.index) = *target;
 
-    auto refusal = lets_go(request) ? std::nullopt : check_age(request, now);  // that is never too late
+    const bool never_late = lets_go(request) || puts_off(request);
+    auto refusal = never_late ? std::nullopt : check_age(request, now);
     if (!refusal)
         if (auto error = check_values(*word, request, command, machine_.layout()))
             refusal =
@@ -240,7 +269,7 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                            "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
     if (refusal && refusal->error.subject.empty())
         refusal->error.subject = subject_of(machine_.layout(), kind, command.axis, command.index);
-    command.expires = now + (request.valid_for - age_of(request, now));
+    command.expires = puts_off(request) ? Instant{} : now + (validity_of(request) - age_of(request, now));
     command.after = request.arrival.after;
     return refusal;
 }
@@ -318,6 +347,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     }
     entry->state = Entry::State::waiting;
     client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
+    client.wrote_values = client.wrote_values || (request.kind == CommandKind::set_value && request.press);
     client.forces = client.forces || request.kind == CommandKind::force;
     if (is_held(request.kind)) jogs_[command.axis] = {request.client, now};
 }
@@ -371,7 +401,7 @@ void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
 
 void Gateway::step(Instant now) {
     now_ = now;
-    leave_outputs();
+    send_endings();
     settle_levels(now);
     while (const auto answer = machine_.next_answer()) {
         const auto client = clients_.find(answer->client);

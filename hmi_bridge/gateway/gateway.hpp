@@ -122,6 +122,7 @@ private:
         std::uint64_t highest = 0;
         std::array<Entry, remembered> entries;
         bool set_outputs = false, forces = false;
+        bool wrote_values = false;  // pressed a button
         Entry* find(std::uint64_t sequence) noexcept;
     };
     struct JogSession {
@@ -136,6 +137,8 @@ private:
     [[nodiscard]] std::optional<Refusal> translate(const Client& client, const CommandRequest& request, Instant now,
                                                    runtime::OperatorCommand& command) const;
     [[nodiscard]] std::optional<Refusal> check_age(const CommandRequest& request, Instant now) const;
+    [[nodiscard]] bool is_button(const CommandRequest& request) const;
+    [[nodiscard]] Duration validity_of(const CommandRequest& request) const;
     [[nodiscard]] std::optional<Refusal> check_jog(const CommandRequest& request, const runtime::OperatorCommand& command,
                                                    Instant now) const;
     void settle(Client& client, Entry& entry, runtime::Answer answer, axes::ErrorId axis_error, Error error, std::string note = {});
@@ -144,7 +147,7 @@ private:
     [[nodiscard]] std::string deed(const CommandRequest& request) const;
     void note(ClientId id, const Client& client, const CommandRequest& request, Instant now);
     void note_end(ClientId id, const Client& client);
-    void leave_outputs();
+    void send_endings();
     void raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now);
     void settle_levels(Instant now);
     void let_go(const CommandRequest& request);
@@ -165,8 +168,8 @@ private:
     std::deque<CommandReply> replies_;
     DeedLog deeds_;
     Hands hands_;
-    std::map<std::uint16_t, ClientId> told_jogs_;  ///< axes whose jog was told to begin, and of whom
-    std::deque<runtime::OperatorCommand> leave_;   ///< what clients that are gone leave behind; the inbox has not taken it yet
+    std::map<std::uint16_t, ClientId> told_jogs_;   ///< axes whose jog was told to begin, and of whom
+    std::deque<runtime::OperatorCommand> endings_;  ///< what ends with clients that are gone; the inbox has not taken it yet
     Instant now_{};
 };
 

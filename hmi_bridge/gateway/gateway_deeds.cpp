@@ -42,8 +42,11 @@ std::string Gateway::deed(const CommandRequest& request) const {
     if (request.kind == CommandKind::measure) text += fmt::format(": {}", name(request.measure.kind));
     if (request.kind == CommandKind::mode) text += fmt::format(" {}", hmi::word(request.mode));
     if (request.kind == CommandKind::override_velocity) text += fmt::format(" {:g} %", 100 * request.value);
-    if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output || request.kind == CommandKind::force)
+    if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output || request.kind == CommandKind::force ||
+        request.kind == CommandKind::set_value)
         text += fmt::format(" = {:g}", request.value);
+    if (request.kind == CommandKind::set_value && place < layout.variables.size() && !layout.variables[place].unit.empty())
+        text += " " + layout.variables[place].unit;
     if (request.kind == CommandKind::set_parameter && place < layout.parameters.size()) text += " " + layout.parameters[place].unit;
     return request.commissioning ? text + ", as commissioning" : text;
 }
@@ -68,7 +71,8 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
             default: break;
         }
     }
-    if (request.kind == CommandKind::jog && axis) {  // begin and end, not what keeps it alive
+    if (request.value != 0 && !request.press && is_button(request)) return;  // a renewal
+    if (request.kind == CommandKind::jog && axis) {                          // begin and end, not what keeps it alive
         if (request.value == 0 && told_jogs_.erase(*axis) == 0) return;
         if (request.value != 0 && !request.press) return;
         if (request.value != 0) told_jogs_[*axis] = id;
@@ -91,27 +95,27 @@ void Gateway::note_end(ClientId id, const Client& client) {
                    now_);
         jog = told_jogs_.erase(jog);
     }
-    OperatorCommand leave;
-    leave.client = id;
-    leave.flag = true;
+    const auto end = [&](OperatorAction what) {
+        OperatorCommand command;
+        command.action = what;
+        command.client = id;
+        command.flag = true;
+        endings_.push_back(command);
+    };
+    if (client.wrote_values) end(OperatorAction::release_values);
     if (client.set_outputs) {
         deeds_.say(client.name, "is gone: outputs that it was the last to set go to their safe values", now_);
-        leave.action = OperatorAction::release_outputs;
-        leave_.push_back(leave);
+        end(OperatorAction::release_outputs);
     }
     if (client.forces) {
         deeds_.say(client.name, "is gone: points that it was the last to force are their own again", now_);
-        leave.action = OperatorAction::release_forces;
-        leave_.push_back(leave);
+        end(OperatorAction::release_forces);
     }
-    leave_outputs();
+    send_endings();
 }
 
-void Gateway::leave_outputs() {
-    while (!leave_.empty()) {
-        if (!machine_.submit(leave_.front())) return;  // the inbox is full: again in the next step
-        leave_.pop_front();
-    }
+void Gateway::send_endings() {
+    while (!endings_.empty() && machine_.submit(endings_.front())) endings_.pop_front();  // a full inbox: again in the next step
 }
 
 }  // namespace taktwerk::hmi

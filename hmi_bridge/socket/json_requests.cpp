@@ -24,7 +24,8 @@
 namespace taktwerk::hmi {
 namespace {
 
-constexpr std::array<std::string_view, 8> questions{"hello", "layout", "state", "alarms", "alarm_history", "simulate", "measure_plan", "measure_result"};
+constexpr std::array<std::string_view, 10> questions{"hello",    "layout",       "state",          "alarms", "alarm_history",
+                                                     "simulate", "measure_plan", "measure_result", "views",  "view_image"};
 struct DriveWord {
     std::string_view word;
     DriveRequestKind kind;
@@ -113,6 +114,7 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
         request.valid_for = std::chrono::milliseconds{250};
         if (request.press) request.measure = read_measure_order(fields);
     }
+    if (entry.kind == CommandKind::set_value) request.press = fields.flag("press");
     std::optional<Error> mode_error;
     if (entry.kind == CommandKind::mode) {
         const auto wanted = fields.text("mode", true);
@@ -215,6 +217,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     if (answer_measure(cmd, connection, id_text, fields)) return;
     fields.integer("utime");
     const auto happening = cmd == "simulate" ? fields.text("line", true) : std::string{};
+    const auto image = cmd == "view_image" ? fields.text("image", true) : std::string{};
     fields.finish();
     if (fields.error()) return refuse(connection, id_text, *fields.error());
     if (cmd == "simulate") {
@@ -231,6 +234,8 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     };
     const auto stuck = machine_.stuck();
     if (cmd == "hello") return with("hello", hello(stuck, now));
+    if (cmd == "views") return with("views", views_.views());
+    if (cmd == "view_image") return answer_image(connection, id_text, image);
     if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
     if (!snapshot_)
         return refuse(connection, id_text,
@@ -299,6 +304,14 @@ void JsonRequests::ask_history(ConnectionId connection, const std::string& id, J
                       {"history.off", machine_.layout().machine, "this machine keeps no alarm history",
                        "Give it rows: `history: {rows: 10000}` in the machine file."});
     history_->ask(connection, id, std::move(*query), now);
+}
+
+void JsonRequests::answer_image(ConnectionId connection, const std::string& id, const std::string& name) {
+    if (const auto members = views_.image(name)) return answer(connection, fmt::format(R"({{"id":{},"ok":true,{}}})", id, *members));
+    const auto near = nearest_name(name.substr(0, 64), views_.images());
+    refuse(connection, id,
+           {"view.no_image", "", fmt::format("no view of this machine shows the picture {}", shown(name)),
+            near.empty() ? "Ask \"views\" for their names." : fmt::format("Did you mean '{}'?", near)});
 }
 
 void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/time.hpp"
@@ -26,6 +27,7 @@
 #include "hmi_bridge/socket/json_fields.hpp"
 #include "hmi_bridge/socket/machine_questions.hpp"
 #include "hmi_bridge/socket/scope_requests.hpp"
+#include "hmi_bridge/views/view_answers.hpp"
 
 namespace taktwerk::hmi {
 
@@ -50,6 +52,9 @@ public:
     void set_recorder(runtime::FlightRecorder* recorder) noexcept { scope_.set_recorder(recorder); }
     /// For "alarm_history"; outlives this. nullptr: none is kept.
     void set_history(AlarmHistory* history) noexcept { history_ = history; }
+
+    /// The machine builder's own pages; without them there are none.
+    void set_views(ViewAnswers views) { views_ = std::move(views); }
 
     /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
@@ -86,6 +91,7 @@ private:
     /// True: the request asked about a measurement and is answered.
     bool answer_measure(std::string_view cmd, ConnectionId connection, const std::string& id, JsonFields& fields);
     void ask_history(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
+    void answer_image(ConnectionId connection, const std::string& id, const std::string& name);
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 
     Gateway& gateway_;
@@ -101,6 +107,7 @@ private:
     std::string progress_;
     Simulate simulate_;
     AlarmHistory* history_ = nullptr;
+    ViewAnswers views_;
     std::map<ConnectionId, ClientId> clients_;
     std::map<ClientId, ConnectionId> connections_;
     std::map<ConnectionId, std::string> names_;

@@ -402,8 +402,12 @@ std::string layout_json(const runtime::MachineLayout& layout) {
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
     auto& variables = out["variables"] = Json::array();
-    for (const auto& v : layout.variables)
-        variables.push_back(Json{{"program", v.program}, {"name", v.name}, {"unit", v.unit}, {"doc", v.doc}, {"type", word(v.type)}});
+    for (const auto& v : layout.variables) {
+        Json one{{"program", v.program}, {"name", v.name},       {"unit", v.unit},
+                 {"doc", v.doc},         {"type", word(v.type)}, {"writable", v.writable}};
+        if (v.writable) one.update(Json{{"minimum", v.minimum}, {"maximum", v.maximum}, {"whole", v.whole()}, {"momentary", v.momentary}});
+        variables.push_back(std::move(one));
+    }
     auto& parameters = out["parameters"] = Json::array();
     for (const auto& p : layout.parameters)
         parameters.push_back(Json{{"program", p.program},

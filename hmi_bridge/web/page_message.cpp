@@ -71,9 +71,18 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
 
 bool PageMessage::may_move() const {
     if (rule == nullptr || !rule->moves) return false;
-    if (!is_jog() || rule->command == "measure") return true;
-    const auto velocity = request.find("velocity");
-    return velocity == request.end() || !velocity->is_number() || velocity->get<double>() != 0;
+    const char* key = rule->command == "jog" ? "velocity" : rule->command == "set_value" ? "value" : nullptr;
+    if (key == nullptr) return true;
+    const auto given = request.find(key);
+    return given == request.end() || !given->is_number() || given->get<double>() != 0;
+}
+
+bool PageMessage::is_held() const { return is_jog() || (rule != nullptr && rule->command == "set_value" && request.contains("press")); }
+
+bool PageMessage::is_renewal() const {
+    if (!is_held() || !may_move()) return false;
+    const auto press = request.find("press");
+    return press == request.end() || *press == false;
 }
 
 std::variant<PageMessage, UnreadMessage> read_page_message(std::string_view text) {

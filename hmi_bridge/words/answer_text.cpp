@@ -83,6 +83,9 @@ std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, 
         case TargetKind::output: return index < layout.outputs.size() ? "output " + layout.outputs[index] : "";
         case TargetKind::input: return index < layout.inputs.size() ? "input " + layout.inputs[index] : "";
         case TargetKind::point: break;
+        case TargetKind::variable:
+            return index < layout.variables.size() ? "variable " + layout.variables[index].program + "." + layout.variables[index].name
+                                                   : "";
     }
     return "";
 }
@@ -116,12 +119,23 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             } else if (kind == CommandKind::jog) {
                 error.what = "the jog is over: it was let go, or its lease ran out before the renewal came (then there is an alarm)";
                 error.remedy = "Let go and press again; if its lease runs out again, the connection or this computer is too slow.";
+            } else if (kind == CommandKind::set_value) {
+                error.what =
+                    "it came too late, or the button is not held any more: it was let go, its renewal stayed out, or an axis of its "
+                    "program "
+                    "was stopped";
+                error.remedy = "Press again.";
             } else {
                 error.what = "the command came too late and was not carried out";
                 error.remedy = "Give it again.";
             }
             break;
         case Answer::no_control:
+            if (kind == CommandKind::set_value) {
+                error.what = "somebody else holds this button";
+                error.remedy = "Wait until it is let go.";
+                break;
+            }
             error.what = fmt::format("{} has control", spoken(answer.owner));
             if (!holder.empty()) error.what += fmt::format("; its block '{}' moves or holds the axis", holder);
             error.remedy = answer.owner == axes::Owner::program
@@ -173,6 +187,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";
                 error.remedy = "Stop the programs first.";
+            } else if (kind == CommandKind::set_value) {
+                error.what = "its program does not run, or the machine is shutting down: nobody would see the press";
+                error.remedy = "Start the program, then press again.";
             } else if (kind == CommandKind::program_start) {
                 error.what = "the program is in fault, or the machine is shutting down";
                 error.remedy = "Reset the program, then start it.";

@@ -27,6 +27,10 @@ std::vector<std::string> names(const runtime::MachineLayout& layout, TargetKind 
         case TargetKind::output: out = layout.outputs; break;
         case TargetKind::input: out = layout.inputs; break;
         case TargetKind::point: break;
+        case TargetKind::variable:
+            for (const auto& variable : layout.variables)
+                if (variable.writable) out.push_back(variable.program + "." + variable.name);
+            break;
     }
     return out;
 }
@@ -64,13 +68,40 @@ std::string_view noun(TargetKind kind) {
         case TargetKind::output: return "output";
         case TargetKind::input: return "input";
         case TargetKind::point: return "point";
+        case TargetKind::variable: return "variable";
     }
     return "";
+}
+
+/// Among those that people may write; by its name alone where only one program has it.
+static Result<std::uint16_t> find_variable(const runtime::MachineLayout& layout, std::string_view name) {
+    std::vector<std::size_t> hits;
+    std::vector<std::string> known, shown_only;
+    for (std::size_t i = 0; i < layout.variables.size(); ++i) {
+        const auto& variable = layout.variables[i];
+        const auto full = variable.program + "." + variable.name;
+        if (!variable.writable) {
+            shown_only.push_back(full);
+            continue;
+        }
+        if (full == name) return static_cast<std::uint16_t>(i);
+        if (variable.name == name) hits.push_back(i);
+        known.push_back(full);
+    }
+    if (hits.size() == 1) return static_cast<std::uint16_t>(hits.front());
+    if (hits.size() > 1)
+        return Error{"command.ambiguous_name", "", fmt::format("{} programs have a variable '{}'", hits.size(), name),
+                     "Give the program too, as `program.name`."};
+    auto error = unknown(TargetKind::variable, name, known);
+    if (std::find(shown_only.begin(), shown_only.end(), name) != shown_only.end())
+        error.what = fmt::format("variable '{}' is the program's alone: people see it, and do not write it", shown(name));
+    return error;
 }
 
 Result<std::uint16_t> find_target(const runtime::MachineLayout& layout, TargetKind kind, std::string_view name) {
     if (kind == TargetKind::none) return all_axes;
     if (kind == TargetKind::axis_or_all && name == "all") return all_axes;
+    if (kind == TargetKind::variable) return find_variable(layout, name);
     const auto candidates = names(layout, kind);
     const auto found = std::find(candidates.begin(), candidates.end(), name);
     if (found != candidates.end()) return static_cast<std::uint16_t>(found - candidates.begin());

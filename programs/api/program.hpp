@@ -53,8 +53,20 @@ struct ParameterSpec {
     ParameterKind kind = ParameterKind::real;
 };
 
+/// What a person may write, in `unit`: minimum <= value <= maximum, whole where the variable is. The variable's own first value is its default
+/// and must lie inside, else the machine does not start.
+struct OperatorValueSpec {
+    double minimum = 0, maximum = 0;  ///< inclusive; not looked at for switches and buttons, which are FALSE or TRUE
+    std::string_view unit{};
+    std::string_view doc{};
+    std::string_view task{};  ///< whose scans it is for, and who alone reads or writes it; needed where the program has several tasks
+};
+
 /// Types of monitored variables.
 enum class VariableType : std::uint8_t { boolean, int32, int64, uint16, uint32, real, duration };
+
+/// How a person changes a variable.
+enum class OperatorValueKind : std::uint8_t { value, toggle, button };
 
 /// Collects what a program needs. A name that the configuration lacks is an error that names it and the nearest one;
 /// handles stay invalid then, and the program is not started.
@@ -115,6 +127,28 @@ public:
     void monitor(std::string_view name, const Duration& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::duration, &v, unit, doc); }
     // clang-format on
 
+    // A variable that a person may write, from the machine's own page (docs/views.md), over the socket or LCM. It is monitored as well. What was
+    // written stands in it from the beginning of the next scan of its task on, and does not change within a scan; what the program writes to it
+    // stands, too, and is what people see. While the program does not run it is written at once.
+    // clang-format off
+    /// A number: speed, length, count.
+    void operator_value(std::string_view name, std::int32_t& v, const OperatorValueSpec& spec) { add_operator_value(name, VariableType::int32, &v, spec, OperatorValueKind::value); }
+    void operator_value(std::string_view name, std::int64_t& v, const OperatorValueSpec& spec) { add_operator_value(name, VariableType::int64, &v, spec, OperatorValueKind::value); }
+    void operator_value(std::string_view name, std::uint16_t& v, const OperatorValueSpec& spec) { add_operator_value(name, VariableType::uint16, &v, spec, OperatorValueKind::value); }
+    void operator_value(std::string_view name, std::uint32_t& v, const OperatorValueSpec& spec) { add_operator_value(name, VariableType::uint32, &v, spec, OperatorValueKind::value); }
+    void operator_value(std::string_view name, double& v, const OperatorValueSpec& spec) { add_operator_value(name, VariableType::real, &v, spec, OperatorValueKind::value); }
+    // clang-format on
+    /// On until somebody (the program may) switches it off.
+    void operator_switch(std::string_view name, bool& v, const OperatorValueSpec& spec = {}) {
+        add_operator_value(name, VariableType::boolean, &v, spec, OperatorValueKind::toggle);
+    }
+    /// TRUE while a person holds it. It falls back when it is let go, and by itself when the page that held it says nothing more, its axes are
+    /// stopped, the emergency stop is pressed or the program ends: a button on a screen is no enabling device all the same. Like an input it
+    /// may be pressed for less than a slow task's period.
+    void operator_button(std::string_view name, bool& v, const OperatorValueSpec& spec = {}) {
+        add_operator_value(name, VariableType::boolean, &v, spec, OperatorValueKind::button);
+    }
+
     /// Anything else would be converted into a temporary whose address is kept: an enumeration, a float, a short, a sum.
     template <class T>
     void monitor(std::string_view name, const T& v, std::string_view unit = {}, std::string_view doc = {}) = delete;
@@ -142,6 +176,8 @@ protected:
     virtual void add(std::string_view name, VariableType type, const void* address, std::string_view unit, std::string_view doc) = 0;
     virtual void add_task(std::string_view name, TaskFunction function) = 0;
     virtual void add_block(std::string_view name, const void* begin, std::size_t size) = 0;
+    virtual void add_operator_value(std::string_view name, VariableType type, void* address, const OperatorValueSpec& spec,
+                                    OperatorValueKind kind) = 0;
 
 private:
     template <class P>

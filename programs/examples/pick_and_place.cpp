@@ -69,6 +69,12 @@ class PickAndPlace final : public Program {
     R_TRIG start_pressed_;
     TON grip_;
 
+    // From the machine's own page: start works as the button at the input does.
+    bool start_by_page_ = false, stop_at_end_ = false;
+    double pace_ = 100;               // percent of `speed`
+    std::int32_t pieces_wanted_ = 0;  // 0: until somebody stops it
+    bool running_ = false;
+
     bool wanted_ = false;  // start was pressed, and power is still on its way: after an emergency stop the same press brings it back
     std::int32_t step_ = waiting;
     std::int64_t pieces_ = 0;
@@ -84,6 +90,12 @@ public:
         speed_ = d.parameter("speed", {.value = 400, .minimum = 10, .maximum = 600, .unit = "mm/s", .doc = "travel of x and y"});
         grip_time_ =
             d.parameter("grip_time", {.value = 0.15, .minimum = 0.05, .maximum = 2, .unit = "s", .doc = "closing and opening the gripper"});
+        d.operator_button("start", start_by_page_, {.doc = "begins the sequence; after an error it resets first, as the button does"});
+        d.operator_switch("stop_at_end", stop_at_end_, {.doc = "stops when the piece under way has been placed"});
+        d.operator_value("pace", pace_,
+                         {.minimum = 10, .maximum = 100, .unit = "%", .doc = "of the parameter speed, from the next motion on"});
+        d.operator_value("pieces_wanted", pieces_wanted_, {.minimum = 0, .maximum = 9999, .doc = "stops after so many; 0: never"});
+        d.monitor("running", running_, "", "the sequence is under way");
         d.monitor("step", step_, "", "step of the sequence");
         d.monitor("pieces", pieces_, "", "pieces placed since start");
         d.alarm(0, Reaction::warn, "An axis is in ErrorStop: remove the cause, reset, then press start",
@@ -101,13 +113,17 @@ public:
     }
 
     void scan(TaskContext& ctx) {
-        start_pressed_.CLK = ctx.get(start_);
+        start_pressed_.CLK = ctx.get(start_) || start_by_page_;
         start_pressed_(ctx);
 
         const bool error = x_.failed(ctx) || y_.failed(ctx) || z_.failed(ctx);
         const bool ready = x_.power.Status && y_.power.Status && z_.power.Status;
         ctx.alarm(0, error);
-        if (start_pressed_.Q && step_ == waiting) wanted_ = true;
+        if (start_pressed_.Q && step_ == waiting) {
+            wanted_ = true;
+            stop_at_end_ = false;
+            if (pieces_wanted_ > 0 && pieces_ >= pieces_wanted_) pieces_ = 0;  // the next batch
+        }
         if (error) wanted_ = false;            // that press resets
         if (error || !ready) step_ = waiting;  // whatever was moving has been stopped by its axis
         else run_sequence(ctx);
@@ -116,7 +132,8 @@ public:
         grip_.IN = step_ == close || step_ == open;
         grip_.PT = from_seconds(ctx.get(grip_time_));
         grip_(ctx);
-        ctx.set(lamp_, step_ != waiting);
+        running_ = step_ != waiting;
+        ctx.set(lamp_, running_);
     }
 
 private:
@@ -162,15 +179,22 @@ private:
                 lift_up(ctx, raise);
                 break;
             case raise:
-                if (z_.there()) travel(ctx, pick, above_pick);
+                if (!z_.there()) break;
+                if (stop_at_end_ || (pieces_wanted_ > 0 && pieces_ >= pieces_wanted_)) {
+                    stop_at_end_ = false;  // done: the switch shows it
+                    step_ = waiting;
+                } else {
+                    travel(ctx, pick, above_pick);
+                }
                 break;
             default: step_ = waiting;
         }
     }
 
     void travel(TaskContext& ctx, const Place& to, Step next) {
-        x_.go(ctx, to.x, ctx.get(speed_));
-        y_.go(ctx, to.y, ctx.get(speed_));
+        const double speed = ctx.get(speed_) * pace_ / 100;
+        x_.go(ctx, to.x, speed);
+        y_.go(ctx, to.y, speed);
         if (next == above_pick) z_.go(ctx, z_up, z_speed);  // after homing it is anywhere
         step_ = next;
     }

@@ -53,6 +53,8 @@ Verdict OperatorDesk::execute(const OperatorCommand& command) noexcept {
         case OperatorAction::override_velocity:
         case OperatorAction::reset_peaks:
         case OperatorAction::reset_statistics:
+        case OperatorAction::set_value:
+        case OperatorAction::release_values:
         case OperatorAction::shutdown: return execute_machine(command);
         case OperatorAction::take_control:
         case OperatorAction::release_control:
@@ -64,6 +66,7 @@ Verdict OperatorDesk::execute(const OperatorCommand& command) noexcept {
         case OperatorAction::measure:
         case OperatorAction::reset:
             if (!a_person && command.action != OperatorAction::stop) return {Answer::no_control, ErrorId::owned_by_other};
+            if (command.action == OperatorAction::stop) programs_.let_go_for_stop(command.axis);
             if (command.axis == all) return execute_all(command);
             if (command.axis >= body_.axes.size() || body_.config.axes[command.axis].axis.disabled) return {Answer::unknown_name};
             return execute_axis(command, command.axis);
@@ -93,6 +96,8 @@ Verdict OperatorDesk::execute_machine(const OperatorCommand& command) noexcept {
         case OperatorAction::override_velocity: return override_velocity(command);
         case OperatorAction::reset_peaks: return reset_peaks(command);
         case OperatorAction::reset_statistics: statistics_reset_ = true; return {};
+        case OperatorAction::set_value: return programs_.write_value(command);
+        case OperatorAction::release_values: programs_.values().let_go_of(command.client); return {};
         case OperatorAction::acknowledge_alarms:
             body_.log.acknowledge();
             for (auto& axis : body_.axes) axis.acknowledge_alarms();

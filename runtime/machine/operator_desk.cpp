@@ -59,6 +59,7 @@ void OperatorDesk::take_levels(Instant at) noexcept {
         // Before that nothing moves; a program that starts by itself shall not then.
         const bool moves = body_.armed.load(std::memory_order_relaxed);
         const bool all = axis == StopLevels::all_axes;
+        if (what == StopLevel::stop) programs_.let_go_for_stop(axis);
         for (std::size_t i = all ? 0 : axis; i < (all ? body_.axes.size() : axis + std::size_t{1}); ++i) {
             hands_.note_stop(i, number);
             if (!moves) continue;
@@ -73,6 +74,11 @@ void OperatorDesk::take_levels(Instant at) noexcept {
 bool OperatorDesk::overtaken(const OperatorCommand& command) const noexcept {
     if (command.action == OperatorAction::program_start)
         return command.index < programs_.programs().size() && command.after < programs_.newest_stop_of(command.index);
+    // What puts something on may start a motion; what it does is the program's.
+    if (command.action == OperatorAction::set_value && command.value != 0) {
+        const auto program = programs_.values().program_of(command.index);
+        return program >= 0 && command.after < programs_.newest_stop_of(static_cast<std::size_t>(program));
+    }
     const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
                                command.action == OperatorAction::measure || (command.action == OperatorAction::jog && command.value != 0);
     return starts_motion && command.axis < body_.axes.size() && command.after < hands_.newest_stop(command.axis);

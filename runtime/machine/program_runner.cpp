@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/stop_levels.hpp"
 #include "runtime/tasks/code_at_work.hpp"
 
 namespace taktwerk::runtime {
@@ -33,6 +34,7 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
     : body_(body),
       hands_(hands),
       host_(body.config, body.io, body.tables, errors),
+      values_(host_),
       claims_(body.config.axes.size()),
       objects_(body.config.programs.size(), body.bus.slave_count()) {
     for (std::size_t p = 0; p < body.config.programs.size(); ++p)
@@ -45,6 +47,7 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
 
 void ProgramRunner::build_tasks() {
     const auto& tasks = host_.tasks();
+    shown_by_slow_.resize(host_.variables().size());
     for (const auto& task : tasks)
         if (task.config.divisor == 1) programs_[task.program].has_base_task = true;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -53,16 +56,34 @@ void ProgramRunner::build_tasks() {
             base_tasks_.push_back({i, 0});
             continue;
         }
+        auto shows = variables_of(i);
         std::vector<ProgramHost::Variable> variables;
-        if (!programs_[task.program].has_base_task)
-            for (const auto& variable : host_.variables())
-                if (variable.program == task.program) variables.push_back(variable);
+        for (const auto place : shows) {
+            variables.push_back(host_.variables()[place]);
+            shown_by_slow_[place] = true;
+        }
         auto& io = body_.io;
-        slow_tasks_.push_back({std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables),
-                                                          body_.axes.size(), io.inputs().size(), io.outputs().size(),
-                                                          host_.parameters().size(), objects_.of(task.program), body_.tables),
-                               i, 0});
+        slow_tasks_.push_back(
+            {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
+                                        io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
+                                        body_.tables, values_.count_of(i)),
+             i, 0, std::move(shows)});
     }
+}
+
+/// Those that are read after the runs of this slow task: the operator values that are its own, and where no base task is all that no other
+/// task has as its own.
+std::vector<std::size_t> ProgramRunner::variables_of(std::size_t task) const {
+    const auto program = host_.tasks()[task].program;
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < host_.variables().size(); ++i) {
+        if (host_.variables()[i].program != program) continue;
+        bool mine = !programs_[program].has_base_task;
+        for (const auto& value : host_.operator_values())
+            if (value.variable == i) mine = value.task == task;
+        if (mine) out.push_back(i);
+    }
+    return out;
 }
 
 void ProgramRunner::learn_outputs() noexcept {
@@ -81,6 +102,7 @@ bool ProgramRunner::start(std::size_t program, std::uint64_t after) noexcept {
 
 void ProgramRunner::stop(std::size_t program, ProgramState state) noexcept {
     programs_[program].state = state;
+    values_.let_go(program);
     host_.programs()[program].alarms = 0;
     programs_[program].handshake.store(Handshake::stop_asked, std::memory_order_release);
     const bool others = std::any_of(programs_.begin(), programs_.end(), [](const ProgramRecord& other) { return other.running(); });
@@ -132,6 +154,16 @@ void ProgramRunner::reset() noexcept {
 bool ProgramRunner::any_runs_or_starts() const noexcept {
     return std::any_of(programs_.begin(), programs_.end(),
                        [](const ProgramRecord& program) { return program.running() || program.start_pending(); });
+}
+
+Verdict ProgramRunner::write_value(const OperatorCommand& command) noexcept {
+    const auto program = values_.program_of(command.index);
+    return values_.write(command, body_.now, program >= 0 && programs_[static_cast<std::size_t>(program)].running(), body_.emergency);
+}
+
+void ProgramRunner::let_go_for_stop(std::uint16_t axis) noexcept {
+    for (std::size_t p = 0; p < programs_.size(); ++p)
+        if (axis == StopLevels::all_axes || host_.uses(p, axis)) values_.let_go(p);
 }
 
 std::uint64_t ProgramRunner::newest_stop_of(std::size_t program) const noexcept {

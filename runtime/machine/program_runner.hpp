@@ -11,6 +11,7 @@
 #include "core/shared_histogram.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
+#include "runtime/machine/operator_values.hpp"
 #include "runtime/tasks/object_requests.hpp"
 #include "runtime/tasks/program_host.hpp"
 #include "runtime/tasks/program_record.hpp"
@@ -41,6 +42,11 @@ public:
     /// What stopped by a fault may start again; overruns count anew.
     void reset() noexcept;
     [[nodiscard]] bool any_runs_or_starts() const noexcept;
+    /// As OperatorAction::set_value.
+    Verdict write_value(const OperatorCommand& command) noexcept;
+    /// A stop of this axis (StopLevels::all_axes: of all): buttons of programs that use it are let go, and want a new press.
+    void let_go_for_stop(std::uint16_t axis) noexcept;
+    [[nodiscard]] OperatorValues& values() noexcept { return values_; }
     /// The newest stop of an axis that the program has declared; 0: none.
     [[nodiscard]] std::uint64_t newest_stop_of(std::size_t program) const noexcept;
 
@@ -84,11 +90,13 @@ private:
     struct SlowPlace {
         std::unique_ptr<SlowTask> task;
         std::size_t place = 0;
-        std::uint16_t overruns = 0;  // in a row
+        std::uint16_t overruns = 0;      // in a row
+        std::vector<std::size_t> shows;  // the variables that are read after its runs
     };
 
     // program_runner.cpp
     void build_tasks();
+    [[nodiscard]] std::vector<std::size_t> variables_of(std::size_t task) const;
     void take_handshakes() noexcept;
     void failed(std::size_t program, const FaultText& why) noexcept;
     void end_motion(std::size_t axis) noexcept;
@@ -99,6 +107,7 @@ private:
     // program_tasks.cpp
     void run_base_task(BaseTask& base) noexcept;
     void release_slow_task(SlowPlace& slow) noexcept;
+    void write_values_at_rest() noexcept;
     void raise_alarms_of(std::size_t program) noexcept;
     /// A run of a task is over.
     void book(std::size_t place, Duration run) noexcept;
@@ -106,6 +115,7 @@ private:
     MachineBody& body_;
     HandMotion& hands_;
     ProgramHost host_;
+    OperatorValues values_;
     std::vector<AxisClaims> claims_;  // per axis
     ProgramRecords programs_;
     ObjectRequests objects_;
@@ -115,6 +125,7 @@ private:
     std::vector<SharedHistogram> task_times_;      // likewise
     LongestTask longest_base_task_;
     std::vector<double> variable_values_;       // as this cycle shows them
+    std::vector<bool> shown_by_slow_;           // which of them are read after a slow task's run
     std::atomic<std::int32_t> pulse_task_{-1};  // of host_.tasks()
     std::atomic<std::int32_t> at_hooks_{-1};    // program whose start() or stop() runs
     mutable std::mutex fault_words_;            // of ProgramHost::Loaded::fault: written beside the service thread

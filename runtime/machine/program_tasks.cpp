@@ -32,6 +32,7 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
     context.parameters = host_.parameters();
     context.alarms = program.alarms;
     context.first_scan = context.cycle == 0;
+    values_.apply(base.place);
     pulse_task_.store(static_cast<std::int32_t>(base.place), std::memory_order_relaxed);
     try {
         const ProgramCode code{task.config.program.c_str(), task.config.name.c_str()};
@@ -88,14 +89,29 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     auto& io = body_.io;
     task.apply(program.requests, io.outputs(), alarms);
     book(slow.place, task.last_run());
+    task.set_write_count(values_.take(slow.place, task.writes()));
     CycleContext context;
     context.now = body_.now;
     context.period = body_.config.cycle;
     task.release(context, body_.views, {io.inputs(), io.input_values()}, io.outputs(), host_.parameters(), alarms);
 }
 
+// Only while neither a task nor start() nor stop() of the program is at work: they have its variables then.
+void ProgramRunner::write_values_at_rest() noexcept {
+    for (std::size_t p = 0; p < programs_.size(); ++p) {
+        const auto& program = programs_[p];
+        if (program.running() || program.handshake.load(std::memory_order_acquire) != Handshake::none || !slow_tasks_finished(p)) continue;
+        if (!values_.apply_at_rest(p, variable_values_)) continue;
+        for (auto& slow : slow_tasks_)
+            if (slow.task->program() == p) slow.task->show_variables();
+    }
+}
+
 void ProgramRunner::run_tasks() noexcept {
     take_handshakes();
+    if (body_.emergency) values_.let_go_all();
+    values_.end_leases(body_.now);
+    write_values_at_rest();
     for (auto& slow : slow_tasks_) release_slow_task(slow);
     longest_base_task_ = {};
     for (auto& base : base_tasks_) {
@@ -148,14 +164,12 @@ void ProgramRunner::read_variables() noexcept {
     const auto& variables = host_.variables();
     for (std::size_t i = 0; i < variables.size(); ++i) {
         const auto& program = programs_[variables[i].program];
-        if (program.has_base_task && program.running()) variable_values_[i] = ProgramHost::read(variables[i]);
+        if (!shown_by_slow_[i] && program.running()) variable_values_[i] = ProgramHost::read(variables[i]);
     }
-    for (const auto& slow : slow_tasks_) {  // a program without a base task: as its last applied run left them
+    for (const auto& slow : slow_tasks_) {  // as its last applied run left them
         const auto values = slow.task->variables();
         if (slow.task->applied() == 0) continue;
-        std::size_t next = 0;
-        for (std::size_t i = 0; i < variables.size() && next < values.size(); ++i)
-            if (variables[i].program == slow.task->program()) variable_values_[i] = values[next++];
+        for (std::size_t i = 0; i < values.size(); ++i) variable_values_[slow.shows[i]] = values[i];
     }
 }
 

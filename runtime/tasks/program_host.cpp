@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -130,8 +132,9 @@ public:
         host_.programs_[program_].alarm_texts[number] = {true, reaction, std::string(english), std::string(chinese), std::string(remedy)};
     }
 
-    /// After declare(): configured names that the program does not know.
+    /// After declare(): configured names that the program does not know, and whose the operator values are.
     void check_configuration() {
+        find_owners();
         const auto& program = config_.programs[program_];
         for (const auto& set : program.parameters) {
             bool known = false;
@@ -153,6 +156,29 @@ protected:
         host_.variables_.push_back({type, address, program_});
         host_.variable_info_.push_back({config_.programs[program_].name, std::string(name), std::string(unit), std::string(doc), type});
     }
+    void add_operator_value(std::string_view name, VariableType type, void* address, const OperatorValueSpec& spec,
+                            OperatorValueKind kind) override {
+        add(name, type, address, spec.unit, spec.doc);
+        auto& info = host_.variable_info_.back();
+        info.writable = true;
+        info.momentary = kind == OperatorValueKind::button;
+        info.minimum = kind == OperatorValueKind::value ? spec.minimum : 0;
+        info.maximum = kind == OperatorValueKind::value ? spec.maximum : 1;
+        const double first = ProgramHost::read(host_.variables_.back());
+        const auto [least, most] = range_of(type);
+        if (kind == OperatorValueKind::value && !(least <= spec.minimum && spec.minimum < spec.maximum && spec.maximum <= most))
+            problem("program.operator_value_range",
+                    fmt::format("operator value '{}' has the range {} to {}, and its type holds {} to {}", name, spec.minimum, spec.maximum,
+                                least, most),
+                    "give .minimum and .maximum in the declaration, the smaller one first");
+        else if (!info.takes(first))
+            problem("program.operator_value_range",
+                    fmt::format("operator value '{}' begins with {}, which a person could not write: it takes {}{} to {}", name, first,
+                                info.whole() ? "whole numbers from " : "", info.minimum, info.maximum),
+                    "correct its first value or its range in the program");
+        host_.operator_values_.push_back({host_.variables_.size() - 1, address, host_.tasks_.size(), info.momentary});
+        owners_.push_back({std::string(name), std::string(spec.task)});
+    }
     void add_task(std::string_view name, TaskFunction function) override {
         once(task_names_, name, "task");
         task_names_.emplace_back(name);
@@ -170,6 +196,38 @@ protected:
     }
 
 private:
+    /// The task that an operator value is for: the one it names, or the only one.
+    void find_owners() {
+        const auto first = host_.operator_values_.size() - owners_.size();
+        const auto first_task = host_.tasks_.size() - task_names_.size();
+        for (std::size_t i = 0; i < owners_.size(); ++i) {
+            const auto& [name, task] = owners_[i];
+            const auto found = std::find(task_names_.begin(), task_names_.end(), task);
+            if (task.empty() && task_names_.size() == 1) host_.operator_values_[first + i].task = first_task;
+            else if (found != task_names_.end())
+                host_.operator_values_[first + i].task = first_task + static_cast<std::size_t>(found - task_names_.begin());
+            else if (task.empty())
+                problem(
+                    "program.operator_value_task",
+                    fmt::format("operator value '{}' does not say which of the program's {} tasks it is for", name, task_names_.size()),
+                    task_names_.empty() ? "declare a task" : fmt::format("write .task = \"{}\" in its declaration", task_names_.front()));
+            else unknown("program.unknown_task", "task", task, task_names_, "the program's tasks");
+        }
+    }
+    /// What a variable holds exactly; a double tells whole numbers apart up to 2^53.
+    static std::pair<double, double> range_of(VariableType type) noexcept {
+        constexpr double exact = 9007199254740992.0;
+        switch (type) {
+            case VariableType::boolean: return {0, 1};
+            case VariableType::int32: return {-2147483648.0, 2147483647.0};
+            case VariableType::uint16: return {0, 65535};
+            case VariableType::uint32: return {0, 4294967295.0};
+            case VariableType::int64: return {-exact, exact};
+            case VariableType::real:
+            case VariableType::duration: break;
+        }
+        return {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+    }
     std::uint16_t point(IoDirection direction, std::string_view name) {
         const int index = io_.find(direction, name);
         if (index >= 0) {
@@ -258,6 +316,7 @@ private:
     std::size_t program_;
     std::vector<Error>& errors_;
     std::vector<std::string> parameter_names_, task_names_, variable_names_;
+    std::vector<std::pair<std::string, std::string>> owners_;  // of its operator values: name, task
 };
 
 ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, axes::MotionTables& tables, std::vector<Error>& errors) {
@@ -319,6 +378,18 @@ double ProgramHost::read(const Variable& variable) noexcept {
         case VariableType::duration: return to_seconds(*static_cast<const Duration*>(variable.address));
     }
     return 0;
+}
+
+void ProgramHost::write(VariableType type, void* address, double value) noexcept {
+    switch (type) {
+        case VariableType::boolean: *static_cast<bool*>(address) = value != 0; break;
+        case VariableType::int32: *static_cast<std::int32_t*>(address) = static_cast<std::int32_t>(value); break;
+        case VariableType::int64: *static_cast<std::int64_t*>(address) = static_cast<std::int64_t>(value); break;
+        case VariableType::uint16: *static_cast<std::uint16_t*>(address) = static_cast<std::uint16_t>(value); break;
+        case VariableType::uint32: *static_cast<std::uint32_t*>(address) = static_cast<std::uint32_t>(value); break;
+        case VariableType::real: *static_cast<double*>(address) = value; break;
+        case VariableType::duration: break;  // no declaration takes one
+    }
 }
 
 }  // namespace taktwerk::runtime

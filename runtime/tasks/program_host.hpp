@@ -27,6 +27,13 @@ public:
         const void* address = nullptr;
         std::size_t program = 0;
     };
+    /// A variable that people may write.
+    struct OperatorValue {
+        std::size_t variable = 0;  ///< its place among the variables
+        void* address = nullptr;
+        std::size_t task = 0;  ///< its place among the tasks: whose scans it is for
+        bool momentary = false;
+    };
     struct AlarmDeclared {
         bool declared = false;
         Reaction reaction = Reaction::none;
@@ -49,6 +56,8 @@ public:
     [[nodiscard]] const std::vector<Loaded>& programs() const noexcept { return programs_; }
     [[nodiscard]] const std::vector<Task>& tasks() const noexcept { return tasks_; }
     [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
+    [[nodiscard]] const std::vector<OperatorValue>& operator_values() const noexcept { return operator_values_; }
+    [[nodiscard]] const MachineLayout::Variable& variable(std::size_t index) const { return variable_info_[index]; }
     [[nodiscard]] std::vector<double>& parameters() noexcept { return parameters_; }
     [[nodiscard]] const std::vector<double>& parameters() const noexcept { return parameters_; }
     /// Adds names, units and documentation of variables, parameters, programs and tasks.
@@ -72,6 +81,8 @@ public:
 
     /// Value of a monitored variable. Real-time safe.
     [[nodiscard]] static double read(const Variable& variable) noexcept;
+    /// `value` is one that the variable takes (MachineLayout::Variable::takes). Real-time safe.
+    static void write(VariableType type, void* address, double value) noexcept;
 
 private:
     class Collector;
@@ -80,6 +91,7 @@ private:
     std::vector<Task> tasks_;
     std::vector<Variable> variables_;
     std::vector<MachineLayout::Variable> variable_info_;
+    std::vector<OperatorValue> operator_values_;
     std::vector<double> parameters_;
     std::vector<MachineLayout::ParameterInfo> parameter_info_;
     std::vector<MachineLayout::Block> blocks_;

@@ -8,7 +8,8 @@
 namespace taktwerk::runtime {
 
 SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
-                   std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables)
+                   std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables,
+                   std::size_t writes)
     : task_(task),
       program_(program),
       divisor_(task.config.divisor),
@@ -21,7 +22,8 @@ SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<
       outputs_(outputs),
       outputs_at_release_(outputs),
       input_values_(inputs),
-      parameters_(parameters) {
+      parameters_(parameters),
+      writes_(writes) {
     requests_.bind(views_);
 }
 
@@ -70,6 +72,8 @@ bool SlowTask::run_if_released() noexcept {
     context.parameters = parameters_;
     context.alarms = alarms_;
     context.first_scan = context_.cycle == 0;
+    for (std::size_t i = 0; i < write_count_; ++i) ProgramHost::write(writes_[i].type, writes_[i].address, writes_[i].value);
+    write_count_ = 0;
     try {
         const ProgramCode code{task_.config.program.c_str(), task_.config.name.c_str()};
         task_.function(program_, context);

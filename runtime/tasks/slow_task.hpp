@@ -19,9 +19,17 @@ namespace taktwerk::runtime {
 class SlowTask {
 public:
     enum class State : std::uint8_t { idle, released, running, done };
+    /// What a person has given: stands in the variable when the run begins.
+    struct Write {
+        VariableType type = VariableType::real;
+        void* address = nullptr;
+        double value = 0;
+    };
 
+    /// `writes`: how many operator values are the task's.
     SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
-             std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables);
+             std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables,
+             std::size_t writes = 0);
 
     // --- cycle thread ---------------------------------------------------------------------------------------------------------
     [[nodiscard]] bool due(std::uint64_t cycle) const noexcept { return cycle % divisor_ == 0; }
@@ -43,11 +51,19 @@ public:
     /// What the last run wrote goes to the machine; only outputs and alarms that it changed.
     void apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, std::uint64_t& program_alarms) noexcept;
     void renew(axes::AxisRequests& axes) noexcept { requests_.renew(axes); }
+    /// Room for what the next run is to find in its operator values; then how much of it is filled. Before release().
+    [[nodiscard]] std::span<Write> writes() noexcept { return writes_; }
+    void set_write_count(std::size_t count) noexcept { write_count_ = count; }
     /// Latches everything and hands the task to its thread.
     void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
     /// Values of the program's variables as the last applied run left them; for programs without a base task.
     [[nodiscard]] std::span<const double> variables() const noexcept { return variables_.applied(); }
+    /// They were written to while the program rests. Only while finished().
+    void show_variables() noexcept {
+        variables_.read();
+        variables_.apply();
+    }
     /// How many runs have been applied.
     [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
     [[nodiscard]] Duration last_run() const noexcept { return run_time_; }
@@ -81,6 +97,8 @@ private:
     std::span<const std::uint8_t> output_bits_;
     std::span<const PointLine> output_lines_;
     std::vector<double> parameters_;
+    std::vector<Write> writes_;
+    std::size_t write_count_ = 0;
     CycleContext context_;
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
     bool threw_ = false;

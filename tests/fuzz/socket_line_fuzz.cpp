@@ -74,7 +74,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             const bool forces = command.action == runtime::OperatorAction::force || command.action == runtime::OperatorAction::unforce;
             const auto points = command.flag ? machine.its_layout.outputs.size() : machine.its_layout.inputs.size();
             if (forces && command.index >= points) std::abort();
-            if (command.expires <= now - std::chrono::nanoseconds{1}) std::abort();
+            // Letting go is never too late.
+            const bool lets_go = command.action == runtime::OperatorAction::set_value && command.value == 0;
+            if (!lets_go && command.expires <= now - std::chrono::nanoseconds{1}) std::abort();
+            if (command.action == runtime::OperatorAction::set_value &&
+                (command.index >= machine.its_layout.variables.size() || !machine.its_layout.variables[command.index].takes(command.value)))
+                std::abort();
             machine.answer(runtime::Answer::accepted);
         }
         now += std::chrono::milliseconds{5};

@@ -21,7 +21,11 @@ public:
         its_layout.outputs = {"lamp_run"};
         its_layout.programs = {"cell", "feeder"};
         its_layout.tasks = {"cell.main"};
-        its_layout.variables = {{"cell", "step", "", "step of the sequence", VariableType::int32}};
+        its_layout.variables = {{"cell", "step", "", "step of the sequence", VariableType::int32},
+                                {"cell", "start", "", "begin", VariableType::boolean, true, true, 0, 1},
+                                {"cell", "count", "", "pieces to make", VariableType::uint16, true, false, 1, 50},
+                                {"feeder", "tempo", "mm/s", "", VariableType::real, true, false, 10, 100},
+                                {"feeder", "light", "", "", VariableType::boolean, true, false, 0, 1}};
         its_layout.parameters = {{"cell", "speed", "mm/s", "transfer speed", 10, 500, 200},
                                  {"cell", "pause", "s", "", 0, 5, 1},
                                  {"feeder", "pause", "s", "", 0, 9, 2}};
@@ -35,7 +39,7 @@ public:
         snapshot.inputs = {0, 1};
         snapshot.outputs = {1};
         snapshot.parameters = {200, 1, 2};
-        snapshot.variables = {7};
+        snapshot.variables = {7, 0, 5, 50, 1};
         snapshot.programs = {runtime::ProgramState::running, runtime::ProgramState::stopped};
         snapshot.tasks.resize(1);
     }

@@ -150,7 +150,8 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
                                          R"("cmd":"override","axis":"all","value":0.5)",
                                          R"("cmd":"reset_peaks","axis":"x")",
                                          R"("cmd":"reset_statistics")",
-                                         R"("cmd":"measure","axis":"x","press":true,"kind":"step")"};
+                                         R"("cmd":"measure","axis":"x","press":true,"kind":"step")",
+                                         R"("cmd":"set_value","variable":"cell.start","value":1,"press":true)"};
     ASSERT_EQ(lines.size(), command_words.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const auto answer = ask("{\"id\":" + std::to_string(i + 1) + "," + lines[i] + "}");

@@ -1,6 +1,6 @@
 // A machine that runs, the server of its page, the network in front of it, a browser that looks at it.
 import { ChildProcess, spawn } from 'node:child_process';
-import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Browser, BrowserContext, chromium, Page } from 'playwright-core';
@@ -49,7 +49,7 @@ export interface Taste {
 /** The demo with its program, its axes by hand, on a computer that is late at times: that is not what is looked at. */
 export const unhurried = (yaml: string): string => yaml.replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '').replace('overruns_allowed: 10', 'overruns_allowed: 1000, lateness_warning: 900 ms');
 /** Without programs as well: an operator alone with three axes. */
-export const quiet = (yaml: string): string => unhurried(yaml).replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '');
+export const quiet = (yaml: string): string => unhurried(yaml).replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '').replace(/^views:[\s\S]*?(?=^# ---)/m, '');
 
 export class Cell {
     line!: Line;
@@ -73,6 +73,7 @@ export class Cell {
     async start(options: CellOptions = {}): Promise<void> {
         const demo = readFileSync(join(source, 'config/machines/demo.yaml'), 'utf8');
         const file = join(this.folder, 'demo.yaml');
+        copyFileSync(join(source, 'config/machines/demo-cell.svg'), join(this.folder, 'demo-cell.svg'));
         writeFileSync(file, (options.machine ?? quiet)(demo).replace(/^hmi:$/m, `hmi:\n  socket: ${this.socket}`));
         this.role_ = options.role ?? this.role_;
         this.users_ = options.users ?? '';

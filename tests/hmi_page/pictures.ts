@@ -39,6 +39,19 @@ try {
     await take('bus', 'bus', {}, () => pause(2500));
     await take('programs', 'programs', {}, () => pause(2500));
     await take('system', 'system', {}, () => pause(2500));
+    // The machine builder's own page (docs/views.md), while the cell works.
+    await cell.machine.ask({ cmd: 'mode', mode: 'automatic' });
+    await cell.machine.ask({ cmd: 'program_start', program: 'pick_and_place' });
+    for (let i = 0; i < 12; i++) {
+        await cell.machine.ask({ cmd: 'set_value', variable: 'pick_and_place.start', value: 1, press: i === 0 });
+        await pause(50);
+    }
+    await cell.machine.ask({ cmd: 'set_value', variable: 'pick_and_place.start', value: 0 });
+    await pause(9000);
+    await take('view', 'view/cell', {}, () => pause(9000));
+    await take('view-zh', 'view/cell', { theme: 'dark', language: 'zh' }, () => pause(9000));
+    await cell.machine.ask({ cmd: 'mode', mode: 'manual' });
+    await pause(1500);
     await take('io', 'io', {}, async () => {
         const force = cell.page.locator('[data-do="forcing"]');
         if (!(await force.isEnabled())) return;

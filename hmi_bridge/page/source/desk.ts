@@ -1,9 +1,10 @@
 // What the pages share: the connection, giving a command and telling its answer, buttons that know when they may be pressed.
 import { Answer, Link, Request } from './link';
-import { JogHold } from './jog';
+import { Ending, JogHold } from './jog';
 import { AxisLayout, AxisState, MachineState } from './state';
 import { Key, say, word } from './texts';
 import { element, mark, write } from './view';
+import { BuilderViews } from './views/builder_views';
 
 export interface Page {
     root: HTMLElement;
@@ -22,7 +23,18 @@ const most_given = 50;
 export class Desk {
     readonly notice = element('div', { class: 'notice', role: 'status', 'aria-live': 'polite' });
 
-    constructor(readonly link: Link, readonly hold: JogHold) {}
+    /** The pages of the machine's builder. */
+    readonly views: BuilderViews;
+
+    /** `hold`: a jog; `pressing`: a button of such a page. One hand holds one of them. */
+    constructor(readonly link: Link, readonly hold: JogHold, readonly pressing: JogHold) {
+        this.views = new BuilderViews(link);
+    }
+    /** Whatever is held. */
+    let_go(ending: Ending): void {
+        this.hold.end(ending);
+        this.pressing.end(ending);
+    }
 
     /** What this page has commanded, newest first. */
     readonly given: Given[] = [];

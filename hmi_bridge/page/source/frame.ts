@@ -7,6 +7,7 @@ import { Entry, pages } from './pages/list';
 import { MachineState } from './state';
 import { current_language, say, word } from './texts';
 import { element, mark, write } from './view';
+import { local } from './views/builder_views';
 
 const modes = ['manual', 'setup', 'automatic'] as const;
 /** More names than these do not fit into the banner of what is forced. */
@@ -17,6 +18,8 @@ export interface FrameHands {
     set_theme(): void;
     dark: boolean;
     route(): Entry;
+    /** What stands in the address behind the page's name. */
+    rest(): readonly string[];
 }
 
 export class Frame {
@@ -46,7 +49,7 @@ export class Frame {
         const language = element('button', { type: 'button', class: 'small', 'data-do': 'language', onclick: hands.set_language }, say('other_language'));
         const theme = element('button', { type: 'button', class: 'small', 'data-do': 'theme', onclick: hands.set_theme }, say(hands.dark ? 'to_light' : 'to_dark'));
         const stop_all = () => {
-            desk.hold.end('stopped');
+            desk.let_go('stopped');
             void desk.give({ cmd: 'stop' });
         };
         const stop = element('button', {
@@ -129,9 +132,19 @@ export class Frame {
     private tabs(hands: FrameHands) {
         const offered = pages.filter((entry) => entry.under === undefined);
         const tabs = offered.map((entry) => element('a', { href: `#${entry.name}`, 'data-page': entry.name }, say(entry.title)));
+        const own = element('div', { class: 'own-tabs' }), views = this.desk_.views;
+        let revision = -1;
+        const own_tabs = (shown: boolean): void => {
+            if (revision !== views.revision) own.replaceChildren(...views.all.map((view) => element('a', { href: `#view/${encodeURIComponent(view.name)}`, 'data-view': view.name }, local(view.title))));
+            revision = views.revision;
+            own.hidden = views.all.length === 0;
+            const name = shown ? views.find(hands.rest()[0])?.name : undefined;
+            for (const tab of own.querySelectorAll('a')) mark(tab, 'aria-current', tab.dataset['view'] === name ? 'page' : false);
+        };
         return {
-            root: element('nav', { class: 'side', 'aria-label': say('pages') }, ...tabs),
+            root: element('nav', { class: 'side', 'aria-label': say('pages') }, own, ...tabs),
             update: () => {
+                own_tabs(hands.route().name === 'view');
                 const entry = hands.route(), standing = standing_alarms(this.desk_.link.state).length;
                 offered.forEach((offer, i) => {
                     const tab = tabs[i];

@@ -1,7 +1,7 @@
 // The page: joins the connection, the hand, the frame and the pages (pages/list.ts); and the loop that writes the newest state into the page shown.
 import { Desk, Page } from './desk';
 import { Frame, html_language } from './frame';
-import { JogHold, watch_page } from './jog';
+import { Clock, Ending, JogHold, watch_page } from './jog';
 import { Link } from './link';
 import { Entry, pages } from './pages/list';
 import { remember, remembered } from './remembered';
@@ -9,6 +9,7 @@ import { choose_language, current_language, Key, say, texts } from './texts';
 import { element, mark } from './view';
 
 const link = new Link(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`);
+const clock: Clock = { now: () => performance.now(), every: (period, step) => { const timer = setInterval(step, period); return () => clearInterval(timer); } };
 const hold = new JogHold({
     jog: async (axis, velocity, press) => {
         const answer = await link.request(press ? { cmd: 'jog', axis, velocity, press } : { cmd: 'jog', axis, velocity });
@@ -18,12 +19,24 @@ const hold = new JogHold({
     },
     blocked: () => !link.opened || link.stalled,
     stale: () => link.stale,
-}, { now: () => performance.now(), every: (period, step) => { const timer = setInterval(step, period); return () => clearInterval(timer); } });
-const desk = new Desk(link, hold);
-hold.on_end = (ending) => {
-    const key = `jog_ended_${ending}`;
+}, clock);
+// A button of the machine builder's own page is held as a jog is; the machine lets go by the same lease.
+const pressing = new JogHold({
+    jog: async (variable, value, press) => {
+        const answer = await link.request(value === 0 ? { cmd: 'set_value', variable, value } : { cmd: 'set_value', variable, value, press });
+        if (!answer.ok && value !== 0) desk.refused(answer);
+        return answer.ok;
+    },
+    blocked: () => !link.opened || link.stalled,
+    stale: () => link.stale,
+}, clock);
+const desk = new Desk(link, hold, pressing);
+const tell_end = (group: string) => (ending: Ending) => {
+    const key = `${group}_${ending}`;
     if (Object.hasOwn(texts, key)) desk.tell('note', say(key as Key));
 };
+hold.on_end = tell_end('jog_ended');
+pressing.on_end = tell_end('press_ended');
 
 let frame: Frame;
 let shown: Page | undefined;
@@ -32,6 +45,9 @@ let shown_as = '';
 /** `#axis/x` is the page `axis` with the rest `x`; what nobody knows is the first page. */
 function route(): { entry: Entry; rest: string[] } {
     const [name, ...parts] = location.hash.slice(1).split('/');
+    const own = pages.find((known) => known.name === 'view');
+    // Who works at the machine begins with its builder's first page, where there is one.
+    if (!name && own && desk.views.all.length > 0 && (link.role === 'viewer' || link.role === 'operator')) return { entry: own, rest: [] };
     const entry = pages.find((known) => known.name === name) ?? (pages[0] as Entry);
     try {
         return { entry, rest: parts.map(decodeURIComponent) };
@@ -42,12 +58,12 @@ function route(): { entry: Entry; rest: string[] } {
 
 function show(): void {
     const { entry, rest } = route();
-    const as = [current_language(), link.machine, entry.name, ...rest].join('\n');
+    const as = [current_language(), link.machine, entry.name, ...rest, ...(entry.name === 'view' ? [desk.views.revision] : [])].join('\n');
     if (!link.layout && !entry.alone) {
         leave();
         frame.main.replaceChildren(element('p', { class: 'hint' }, say(link.login && link.role === '' ? 'login_first' : 'never_banner')));
     } else if (!shown || as !== shown_as) {
-        hold.end('blur');
+        desk.let_go('blur');
         leave();
         shown = entry.make(desk, rest);
         frame.main.replaceChildren(shown.root);
@@ -60,6 +76,7 @@ function leave(): void {
     shown = undefined;
 }
 function refresh(): void {
+    desk.views.step();
     frame.update();
     show();
     if (!link.state) return;
@@ -69,7 +86,7 @@ function refresh(): void {
 
 const dark = (): boolean => document.documentElement.dataset['theme'] === 'dark';
 function rebuild(): void {
-    hold.end('blur');
+    desk.let_go('blur');
     document.documentElement.lang = html_language();
     desk.hush();
     leave();
@@ -86,6 +103,7 @@ function rebuild(): void {
         },
         dark: dark(),
         route: () => route().entry,
+        rest: () => route().rest,
     });
     refresh();
 }
@@ -94,6 +112,7 @@ document.documentElement.dataset['theme'] = remembered('theme') ?? (matchMedia('
 choose_language((remembered('language') ?? (navigator.language.startsWith('zh') ? 'zh' : 'en')) === 'zh' ? 'zh' : 'en');
 rebuild();
 watch_page(hold);
+watch_page(pressing);
 desk.tell_reasons();
 let asked = false;
 link.on_change = () => {
@@ -104,7 +123,7 @@ link.on_change = () => {
         refresh();
     });
 };
-link.on_closed = () => hold.end('socket');
+link.on_closed = () => desk.let_go('socket');
 window.addEventListener('hashchange', refresh);
 setInterval(refresh, 100);  // the age goes on without messages
 link.open();

@@ -9,6 +9,7 @@ import { measure } from './texts/measure';
 import { programs } from './texts/programs';
 import { scope } from './texts/scope';
 import { system } from './texts/system';
+import { view } from './texts/view';
 import { why } from './texts/why';
 
 export type Language = 'en' | 'zh';
@@ -23,6 +24,7 @@ export const rooms = {
     programs,
     scope,
     system,
+    view,
     why,
 };
 export type Key = { [Room in keyof typeof rooms]: keyof (typeof rooms)[Room] }[keyof typeof rooms];

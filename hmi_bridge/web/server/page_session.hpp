@@ -153,13 +153,13 @@ private:
         if (message.may_move() && !message.sent_ms)
             return Error{"web.no_time", command, "a command that can move something says when it was given",
                          "Add sent_ms; reload the page."};
-        if (message.may_move() && waited_ > (message.is_jog() ? MessageAge::longest_of_jog : MessageAge::longest)) {
+        if (message.may_move() && waited_ > (message.is_held() ? MessageAge::longest_of_jog : MessageAge::longest)) {
             if (message.is_jog()) let_go();
             return Error{"web.too_old", command,
                          fmt::format("it took {} ms to arrive: nobody knows whether it is still wanted", waited_ / 1ms),
                          "Give it again; if this stays, reload the page and look at the network."};
         }
-        const bool lets_go = message.is_jog() && !message.may_move();
+        const bool lets_go = message.rule->moves && !message.may_move();
         if (waiting() >= most_waiting && !lets_go)
             return Error{"web.busy", command, "too many commands of this page wait for the machine", "Wait for their answers."};
         return std::nullopt;
@@ -170,7 +170,7 @@ private:
         message.request["utime"] = wall_utime() - waited_ / 1us;
         const auto command = message.rule->command;
         const auto patience = command.starts_with("drive_") ? drive_patience : answer_patience;
-        const bool renewal = message.is_jog() && message.may_move() && !message.request.contains("press");
+        const bool renewal = message.is_renewal();
         if (message.is_jog() && message.request.contains("axis")) jogged_ = message.may_move() ? message.request["axis"] : Json{};
         const bool is_long = answers_long(command);
         if (is_long) ++asked_long_;

@@ -10,6 +10,7 @@ import { overview } from './overview';
 import { programs } from './programs';
 import { scope } from './scope';
 import { system } from './system';
+import { builder_view } from './view';
 
 export interface Entry {
     readonly name: string;
@@ -27,6 +28,7 @@ export interface Entry {
 /** In the order of the tabs. The first one is shown where the address names none. */
 export const pages: readonly Entry[] = [
     { name: 'overview', title: 'overview', make: overview },
+    { name: 'view', title: 'view_page', make: builder_view, under: 'view' },  // a tab each: frame.ts
     { name: 'axis', title: 'axis', make: axis_page },
     { name: 'measure', title: 'axis_measure', make: measure, under: 'axis' },
     { name: 'scope', title: 'scope', make: scope, alone: true },
