@@ -60,8 +60,6 @@ void draw(const std::string& text, bool first) {
     std::fflush(stdout);
 }
 
-std::string pattern_of(const std::string& channel) { return channel.empty() ? ".*" : channel; }
-
 int no_pattern(const std::string& text) {
     print_error(
         {"lcm.channel", text, "this is no channel and no regular expression", "Write a name, or one such as 'TAKTWERK_.*_AXIS_STATE'."});

@@ -15,6 +15,7 @@ hmi::JsonRequests::About about() {
              {"libmodbus", TAKTWERK_LIBMODBUS_VERSION, "LGPL-2.1"},
              {"nlohmann-json", TAKTWERK_JSON_VERSION, "MIT"},
              {"pugixml", TAKTWERK_PUGIXML_VERSION, "MIT"},
+             {"SQLite", TAKTWERK_SQLITE_VERSION, "public domain"},
              {"yaml-cpp", TAKTWERK_YAML_VERSION, "MIT"}}};
 }
 

@@ -21,8 +21,12 @@ void AlarmHistory::look(const runtime::Snapshot& snapshot, Instant now, std::int
     if (changes.empty()) return;
     const std::lock_guard lock{mutex_};
     for (auto& change : changes) {
-        if (waiting_.size() >= most_waiting && waiting_.find(change.key) == waiting_.end()) ++dropped_;
-        else waiting_[change.key] = std::move(change.row);
+        if (waiting_.size() < most_waiting || waiting_.find(change.key) != waiting_.end()) {
+            waiting_[change.key] = std::move(change.row);
+        } else if (change.key > last_dropped_) {  // each once, also where its end finds no room either
+            last_dropped_ = change.key;
+            ++dropped_;
+        }
     }
 }
 

@@ -97,7 +97,7 @@ private:
 
     std::mutex mutex_;  // held by both, and for no disk
     Waiting waiting_;
-    std::uint64_t dropped_ = 0;
+    std::uint64_t dropped_ = 0, last_dropped_ = 0;
     std::deque<Question> questions_;
     std::deque<Answered> answered_;
 

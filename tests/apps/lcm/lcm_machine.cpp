@@ -65,7 +65,7 @@ protected:
         return command(std::move(words));
     }
     double position() const {
-        const auto state = json::parse(operate({"monitor", "--json"}).second, nullptr, false);
+        const auto state = json::parse(operate({"monitor", "--once", "--json"}).second, nullptr, false);
         return state.is_object() ? state["axes"][0]["actual_position"].get<double>() : -1e9;
     }
     void move_axis() const {
@@ -195,7 +195,7 @@ TEST_F(Lcm, WhatIsRecordedIsPlayedOnlyWhereNobodyLivesAndLcmsOwnToolsReadIt) {
     }
     if (installed("lcm-logplayer")) {
         Child hears(network_->in({taktwerk, "lcm", "spy", "TAKTWERK_MINIMAL_AXIS_STATE", "--once", "--for", "30s"}));
-        Child player(network_->in({"lcm-logplayer", "-q", "-l", "udpm://239.255.76.67:7667?ttl=0", ours}));
+        Child player(network_->in({"lcm-logplayer", "-l", "udpm://239.255.76.67:7667?ttl=0", ours}));
         EXPECT_EQ(hears.wait(patience), exit_ok) << hears.text() << player.text();
         EXPECT_THAT(hears.text(), HasSubstr("name: x"));
     }
