@@ -195,6 +195,14 @@ test('what was overwritten while it was read came as NaN, and is a gap; a NaN th
     assert.deepEqual(store.tracks.get('b')?.have.list, [{ from: 10, to: 12 }, { from: 14, to: 15 }]);
 });
 
+test('an answer that is none of this protocol changes nothing', async () => {
+    for (const strange of [{}, { data: 'x' }, { data: [7], from: -1, to: 5 }, { data: ['AAAA'], from: 5, to: 1 }, { data: [], from: 1.5, to: 3 }, { data: ['AAAAAAAAAAA='], from: 1, to: 2, per: 4 }]) {
+        const store = new Store(100), reader = new Reader(() => Promise.resolve({ ok: true, first: 0, last: 50, ...strange }), undefined, store, 1e6);
+        assert.equal(await reader.read(['a'], 1, 10), undefined);
+        assert.equal(store.newest, 0);
+    }
+});
+
 test('more than 64 signals are asked for in several questions, all up to the same cycle', async () => {
     const names = Array.from({ length: 100 }, (_, i) => `s${i}`);
     const machine = new FakeScope(names.map((n) => signal(n)), Object.fromEntries(names.map((n, i) => [n, (c: number) => c * 1000 + i])));

@@ -9,6 +9,7 @@ import { Channel, Kind, matches, Signal, tree } from '@page/scope/signals';
 import { Figures } from '@page/scope/statistics';
 import { Store } from '@page/scope/store';
 import { arm_request, first_trigger, next_event, status_of, trouble } from '@page/scope/trigger';
+import { time_ticks } from '@page/scope/time_ticks';
 import { View } from '@page/scope/view';
 
 const signal = (name: string, unit = '', kind: Kind = 'real', group = 'axis'): Signal => ({ name, unit, kind, group, of: name.split('.')[0] ?? '', en: name.replace('.', ' '), zh: '' });
@@ -150,6 +151,19 @@ test('a set-up comes back as it was; a stranger\'s is looked at, key by key', ()
     const full = new SavedSetups({ getItem: () => { throw new Error('no'); }, setItem: () => { throw new Error('full'); } });
     assert.equal(full.save('mine', setup), false);
     assert.equal(full.last, undefined);
+});
+
+test('round times stand where their cycles are, on a machine that is late as well', () => {
+    const even = time_ticks(1000.5, 3000.5, 4, (cycle) => cycle / 1000, 0.001);
+    assert.equal(even.step, 0.5);
+    assert.deepEqual(even.ticks.map((t) => [Math.round(t.cycle * 1e6) / 1e6, t.seconds]), [[1500, 1.5], [2000, 2], [2500, 2.5], [3000, 3]]);
+    // From cycle 2000 on half a second late: 2.2 s fell into the gap, 2.5 s is cycle 2000 again.
+    const late = time_ticks(1000, 3000, 12, (cycle) => (cycle < 2000 ? cycle : cycle + 500) / 1000, 0.001);
+    assert.equal(late.step, 0.5);
+    assert.deepEqual(late.ticks.map((t) => [Math.round(t.cycle * 1e6) / 1e6, t.seconds]), [[1000, 1], [1500, 1.5], [2000, 2], [2000, 2.5], [2500, 3], [3000, 3.5]]);
+    // Counted from a trigger; zoomed in between two cycles.
+    assert.deepEqual(time_ticks(0, 10, 10, (cycle) => 5 + cycle / 1000, 0.001, 5.004).ticks.map((t) => Math.round(t.seconds * 1e6)), [-4000, -3000, -2000, -1000, 0, 1000, 2000, 3000, 4000, 5000, 6000]);
+    assert.deepEqual(time_ticks(5, 5, 10, (cycle) => cycle, 1).ticks, []);
 });
 
 test('a view that follows keeps its right edge, one that stands is zoomed about the pointer', () => {

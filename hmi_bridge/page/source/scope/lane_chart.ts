@@ -27,13 +27,13 @@ export interface Look {
     font: string;
 }
 
-/** What is drawn now. Times are seconds from `origin`. */
+/** What is drawn now: cycles. */
 export interface Shot {
     store: Store;
     from: number;
     to: number;
-    cycle_s: number;
-    origin: number;
+    /** The cycles of round times, and what is written there. */
+    ticks: { cycle: number; text: string }[];
     signal(name: string): Signal | undefined;
     /** Number of a curve, as in the list. */
     number(key: string): number;
@@ -50,18 +50,18 @@ export class LaneChart {
     private readonly columns_: Columns[];
     private size_ = '';
 
-    constructor(readonly lane: Lane, readonly look: Look, with_time: boolean, host: HTMLElement, time_text: (seconds: number, step: number) => string) {
+    constructor(readonly lane: Lane, readonly look: Look, with_time: boolean, host: HTMLElement) {
         this.columns_ = lane.channels.map(() => new Columns());
         const axis = { incrs: steps, stroke: look.quiet, font: look.font, grid: { stroke: look.grid, width: 1 }, ticks: { stroke: look.grid, width: 1, size: 4 } };
         this.plot = new uPlot({
             width: 200, height: 60, legend: { show: false }, cursor: { show: false }, padding: [with_time ? 0 : 4, right_room, with_time ? 0 : 4, 0], pxAlign: 1,
             scales: {
-                x: { time: false, auto: false, range: () => this.times() },
+                x: { time: false, auto: false, range: () => this.cycles() },
                 y: { auto: false, range: () => [this.range.min, this.range.max] },
             },
             axes: [
-                { ...axis, size: with_time ? time_height : 0, gap: 3, space: 90, ticks: { ...axis.ticks, show: with_time },
-                    values: (_plot, splits, _axis, _space, step) => splits.map((s) => (with_time ? time_text(s, step) : '')) },
+                { ...axis, size: with_time ? time_height : 0, gap: 3, ticks: { ...axis.ticks, show: with_time },
+                    splits: () => this.shot_?.ticks.map((tick) => tick.cycle) ?? [], values: () => this.shot_?.ticks.map((tick) => (with_time ? tick.text : '')) ?? [] },
                 lane.digital ? { ...axis, size: scale_width, grid: { show: false }, ticks: { show: false }, values: (_plot, splits) => splits.map(() => '') }
                     : { ...axis, size: scale_width, gap: 4, space: 18, values: (_plot, splits) => splits.map((s) => String(Number(s.toPrecision(10))).replace('-', '−')) },
             ],
@@ -101,7 +101,7 @@ export class LaneChart {
             this.range = this.manual ?? this.automatic_;
         }
         this.plot.batch(() => {
-            const [min, max] = this.times();
+            const [min, max] = this.cycles();
             this.plot.setScale('x', { min, max });
             this.plot.setScale('y', this.range);
             this.plot.redraw(true, true);
@@ -126,9 +126,9 @@ export class LaneChart {
         this.plot.destroy();
     }
 
-    private times(): [number, number] {
+    private cycles(): [number, number] {
         const shot = this.shot_;
-        return shot ? [(shot.from - shot.origin) * shot.cycle_s, (shot.to - shot.origin) * shot.cycle_s] : [0, 1];
+        return shot ? [shot.from, shot.to] : [0, 1];
     }
     private frame(): Frame {
         const { left, top, width, height } = this.plot.bbox, shot = this.shot_;

@@ -37,7 +37,7 @@ const least_part = 1e-5;
 export function range_around(low: number, high: number): Range {
     if (!(low <= high) || !Number.isFinite(low) || !Number.isFinite(high)) return { min: -1, max: 1 };
     const size = Math.max(Math.abs(high), Math.abs(low));
-    const room = high > low ? Math.max((high - low) * 0.06, (size * least_part - (high - low)) / 2) : Math.max(size * 0.05, 1e-3);
+    const room = high > low ? Math.max((high - low) * 0.06, (size * least_part - (high - low)) / 2) : Math.max(size * 0.05, 1.2e-3);
     return { min: low - room, max: high + room };
 }
 

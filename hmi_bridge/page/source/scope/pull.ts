@@ -74,7 +74,8 @@ export class Reader {
             const first = Number(answer['first']), last = Number(answer['last']);
             if (Number.isFinite(first) && Number.isFinite(last)) this.extent = { first, last };
             const begin = Number(answer['from']), end = Number(answer['to']);
-            if (answer['per'] !== undefined && Number(answer['per']) !== 1) return got;  // asked for every sample
+            const data = answer['data'];
+            if (!Array.isArray(data) || !Number.isSafeInteger(begin) || !Number.isSafeInteger(end) || begin < 0 || end < begin || (answer['per'] ?? 1) !== 1) return got;  // none that was asked for
             const zero_ns = Number(answer['time_ns'] ?? begin * this.cycle_ns_) - begin * this.cycle_ns_;
             if (this.recording_ === undefined && (last < this.newest_.cycle || (end > begin && another_run(this.newest_, { cycle: end - 1, zero_ns }, this.cycle_ns_)))) {
                 this.on_restart();
@@ -83,9 +84,8 @@ export class Reader {
             if (end > begin && end > this.newest_.cycle) this.newest_ = { cycle: end - 1, zero_ns };
             // More missing than what lies outside: some were overwritten while they were read, and came as NaN.
             const lost = Number(answer['missing'] ?? 0) > range.to - range.from - (end - begin);
-            const data = answer['data'] as string[];
             signals.forEach((name, i) => {
-                const values = this.doubles_.decode(data[i] ?? '').subarray(0, end - begin);
+                const values = this.doubles_.decode(String(data[i] ?? '')).subarray(0, end - begin);
                 if (!lost) this.store.put(name, begin, values);
                 else for_each_run(values, (run, at) => this.store.put(name, begin + at, run));
             });

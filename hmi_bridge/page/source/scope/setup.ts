@@ -46,7 +46,7 @@ export function from_text(given: string): Setup | undefined {
     }
     for (const [key, range] of Object.entries(object(all['scales']))) {
         const { min, max } = object(range);
-        if (typeof min === 'number' && typeof max === 'number' && Number.isFinite(min) && Number.isFinite(max) && min < max) setup.scales[key] = { min, max };
+        if (typeof min === 'number' && typeof max === 'number' && Number.isFinite(min) && Number.isFinite(max) && min < max && key !== '__proto__') setup.scales[key] = { min, max };
     }
     setup.span_s = Math.min(3600, Math.max(1e-4, real(all['span_s'], 10)));
     const trigger = object(all['trigger']), mine = setup.trigger;

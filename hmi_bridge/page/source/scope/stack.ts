@@ -8,6 +8,7 @@ import { band_height, LaneChart, Look, right_room, scale_width } from './lane_ch
 import { Lane, lanes_of, Range } from './lanes';
 import { Channel, key_of } from './signals';
 import { Scene, Session } from './session';
+import { time_ticks } from './time_ticks';
 
 export const gutter_width = 176;
 const left_room = gutter_width + scale_width;
@@ -73,7 +74,7 @@ export class Stack {
         const style = look(), scene = this.session_.scene;
         const rows = lanes.map((lane) => {
             const host = element('div', { class: 'scope-host' });
-            const chart = new LaneChart(lane, style, false, host, (s, step) => this.tick_text(s, step));
+            const chart = new LaneChart(lane, style, false, host);
             const names = lane.channels.map((channel) => {
                 const key = key_of(channel), signal = scene?.signals.get(channel.name), number = this.session_.setup.channels.indexOf(channel) + 1;
                 return element('button', { type: 'button', class: 'scope-name', 'data-channel': key, title: `${key} ${signal?.unit ?? ''}`, onclick: () => this.chosen_(key),
@@ -95,7 +96,7 @@ export class Stack {
         this.lanes_.replaceChildren(...rows.map((row) => row.root));
         // The time stays in sight when there are more lanes than room.
         this.time_chart_?.destroy();
-        this.time_chart_ = new LaneChart({ key: 'time', unit: '', digital: true, channels: [] }, style, true, this.time_, (s, step) => this.tick_text(s, step));
+        this.time_chart_ = new LaneChart({ key: 'time', unit: '', digital: true, channels: [] }, style, true, this.time_);
     }
     private size(): void {
         const width = this.scroll_.clientWidth - gutter_width, height = this.root.clientHeight - time_height - 1;
@@ -133,9 +134,9 @@ export class Stack {
         if (force || drawn !== this.drawn_) {
             this.drawn_ = drawn;
             this.size();
-            const edge = Math.min(Math.floor(view.to), scene.store.newest - 1);  // where the eye is
-            const origin = scene.marker ? scene.marker.cycle : edge - scene.seconds(edge) / (scene.cycle_ns / 1e9);
-            const shot = { store: scene.store, from: view.from, to: view.to, cycle_s: scene.cycle_ns / 1e9, origin, signal: known, newest: scene.store.newest,
+            const cycle_s = scene.cycle_ns / 1e9, zero_s = scene.marker ? scene.seconds(scene.marker.cycle) : 0;
+            const { ticks, step } = time_ticks(view.from, view.to, Math.max(2, this.width / 90), (cycle) => scene.seconds(cycle), cycle_s, zero_s);
+            const shot = { store: scene.store, from: view.from, to: view.to, ticks: ticks.map((tick) => ({ cycle: tick.cycle, text: this.tick_text(tick.seconds, step) })), signal: known, newest: scene.store.newest,
                 number: (key: string) => setup.channels.findIndex((c) => key_of(c) === key) + 1 };
             for (const row of this.rows_) {
                 row.chart.manual = setup.scales[row.chart.lane.key];

@@ -1,0 +1,214 @@
+// Strangers, slow readers and long answers before the page's server: what is dropped, what flows on, and that a stop passes everything.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "tests/hmi_bridge/web/served_site.hpp"
+
+namespace taktwerk::hmi::web {
+namespace {
+
+using namespace std::chrono_literals;
+
+class ServerLimits : public ServedSite {
+protected:
+    /// ms that a stop of `page` takes to the machine; -1: it never came.
+    std::int64_t stop_takes(PageClient& page) {
+        const auto before = machine.asked("stop").size();
+        const auto at = PageClock::now();
+        page.command({{"cmd", "stop"}});
+        while (PageClock::now() - at < 5s) {
+            if (machine.asked("stop").size() > before)
+                return std::chrono::duration_cast<std::chrono::milliseconds>(PageClock::now() - at).count();
+            ::usleep(1000);
+        }
+        return -1;
+    }
+};
+
+TEST_F(ServerLimits, AnAnswerOfFourMebibytesPassesUnread) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    machine.long_answer = 4 * 1024 * 1024 - 4096;
+    const auto answer = page.ask({{"cmd", "scope_read"}, {"signals", {"x.set_position"}}}, 60s);
+    EXPECT_EQ(answer["ok"], true);
+    EXPECT_EQ(answer["data"].get<std::string>().size(), 4u * 1024 * 1024 - 4096);
+}
+
+// Eight such answers are under way to a page that takes none of them: its stop and its jog are at the machine all the same.
+TEST_F(ServerLimits, LongAnswersDelayNeitherAStopNorAJog) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port, {}, 16 * 1024));
+    ASSERT_TRUE(shows_machine(page));
+    machine.long_answer = 1024 * 1024;
+    for (int i = 0; i < 8; ++i) page.command({{"cmd", "scope_read"}});
+    EXPECT_LT(stop_takes(page), 500);
+    EXPECT_GE(machine.asked("stop").size(), 1u);
+    page.command({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 5}, {"press", true}});
+    for (int tries = 0; tries < 500 && machine.asked("jog").empty(); ++tries) ::usleep(1000);
+    ASSERT_EQ(machine.asked("jog").size(), 1u);
+    EXPECT_NE(machine.asked("jog")[0].connection, machine.asked("scope_read").at(0).connection);
+}
+
+TEST_F(ServerLimits, WhoTakesNothingIsDroppedAndNobodyElseFeelsIt) {
+    serve();
+    PageClient slow, quick;
+    ASSERT_TRUE(slow.open(port, {}, 4096));
+    ASSERT_TRUE(quick.open(port));
+    ASSERT_TRUE(shows_machine(slow));
+    ASSERT_TRUE(shows_machine(quick));
+    machine.long_answer = 3 * 1024 * 1024;
+    slow.command({{"cmd", "scope_read"}});
+    for (const auto until = PageClock::now() + 4s; PageClock::now() < until;) ASSERT_FALSE(quick.next("state", 1s).is_null());
+    // What the kernel and the socket still held comes; then the end, before the answer is whole.
+    EXPECT_TRUE(slow.ask({{"cmd", "hello"}}, 3s).is_null());
+    EXPECT_TRUE(slow.is_closed(3s));
+}
+
+TEST_F(ServerLimits, OfValuesASlowPageGetsTheNewest) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    const auto first = page.next("state")["state"]["cycle"].get<std::int64_t>();
+    ::usleep(500'000);  // ten states: the kernel holds them, and the page reads them all
+    std::int64_t last = first;
+    for (PageJson state = page.next("state", 20ms); !state.is_null(); state = page.next("state", 20ms)) {
+        EXPECT_GT(state["state"]["cycle"].get<std::int64_t>(), last);
+        last = state["state"]["cycle"].get<std::int64_t>();
+        if (last > first + 8) break;
+    }
+    EXPECT_GT(last, first + 2);
+}
+
+TEST_F(ServerLimits, IdleConnectionsKeepNobodyOut) {
+    serve();
+    std::deque<TcpEnd> idle;
+    for (std::size_t i = 0; i < 2 * WebServer::most_connections; ++i) {
+        idle.emplace_back();
+        ASSERT_TRUE(idle.back().open(port)) << i;
+        if (i % 2 == 0) idle.back().write("GET / HT");
+    }
+    EXPECT_EQ(http_request(port, "GET /").status, 200);
+    PageClient page;
+    EXPECT_TRUE(page.open(port));
+    EXPECT_FALSE(page.next("state").is_null());
+}
+
+TEST_F(ServerLimits, TheSeventeenthPageIsToldThatTheyAreTooMany) {
+    serve();
+    std::deque<PageClient> pages;
+    for (std::size_t i = 0; i < WebServer::most_pages; ++i) {
+        pages.emplace_back();
+        ASSERT_TRUE(pages.back().open(port)) << i;
+    }
+    PageClient another;
+    EXPECT_FALSE(another.open(port));
+    EXPECT_EQ(another.status(), 503);
+    pages.pop_front();
+    bool opened = false;
+    for (int tries = 0; tries < 100 && !opened; ++tries) {
+        opened = another.open(port);
+        if (!opened) ::usleep(20'000);
+    }
+    EXPECT_TRUE(opened);
+}
+
+TEST_F(ServerLimits, AViewersStopNeedsNoPlaceAtTheMachine) {
+    ServerOptions options;
+    options.role = Role::viewer;
+    serve(options);
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    EXPECT_EQ(page.ask({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 5}, {"press", true}})["error"]["code"], "web.role");
+    EXPECT_EQ(machine.connections(), 1u);
+    EXPECT_EQ(page.ask({{"cmd", "stop"}})["ok"], true);
+    EXPECT_EQ(page.ask({{"cmd", "stop"}, {"sent_ms", 0.0}})["ok"], true) << "an old stop is a stop";
+    EXPECT_EQ(machine.connections(), 1u);
+    ASSERT_EQ(machine.asked("stop").size(), 2u);
+}
+
+// The machine answers nothing: thirty-two commands wait, the next is refused, a stop and a jog let go are not.
+TEST_F(ServerLimits, ABusyPageMayStopAndLetGo) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    machine.silent = true;
+    for (int i = 0; i < 32; ++i) page.command({{"cmd", "mode"}, {"mode", "manual"}});
+    EXPECT_EQ(page.ask({{"cmd", "mode"}, {"mode", "manual"}}, 1s)["error"]["code"], "web.busy");
+    EXPECT_GE(stop_takes(page), 0);
+    page.command({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 0}});
+    for (int tries = 0; tries < 500 && machine.asked("jog").empty(); ++tries) ::usleep(1000);
+    EXPECT_EQ(machine.asked("jog").size(), 1u);
+}
+
+TEST_F(ServerLimits, WhatANetworkHeldBackIsNotCarriedOut) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    const auto at = PageClient::now_ms();
+    EXPECT_EQ(page.ask({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 5}, {"press", true}, {"sent_ms", at}})["ok"], true);
+    ::usleep(600'000);  // the stall; then everything at once, as it was sent
+    for (int i = 1; i <= 6; ++i)
+        EXPECT_EQ(page.ask({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 5}, {"sent_ms", at + 50 * i}})["error"]["code"], "web.too_old")
+            << i;
+    EXPECT_EQ(page.ask({{"cmd", "move"}, {"axis", "x"}, {"position", 5}, {"velocity", 5}, {"sent_ms", at + 300}})["error"]["code"],
+              "web.too_old");
+    const auto jogs = machine.asked("jog");
+    ASSERT_EQ(jogs.size(), 2u) << "the press, and the server's own word that it is let go";
+    EXPECT_EQ(jogs[1].request["velocity"], 0);
+    EXPECT_TRUE(machine.asked("move").empty());
+}
+
+TEST_F(ServerLimits, TwoMachinesAndNoCommandForTheOneThatIsNotShown) {
+    SocketMachine other{"press", (folder_ / "press.sock").string()};
+    ServerOptions options;
+    options.machines = {machine.path(), other.path()};
+    serve(options);
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    const auto both = page.next(
+        [](const PageJson& one) { return one.value("type", "") == "hello" && one["machines"].size() == 2 && one["machine"] == "demo"; },
+        5s);
+    ASSERT_FALSE(both.is_null());
+    EXPECT_EQ(page.ask({{"cmd", "mode"}, {"mode", "manual"}, {"machine", "press"}})["error"]["code"], "web.other_machine");
+    EXPECT_EQ(page.ask({{"cmd", "stop"}, {"machine", "press"}})["ok"], true) << "any machine may be stopped from any page";
+    EXPECT_EQ(other.asked("stop").size(), 1u);
+    page.say({{"type", "watch"}, {"machine", "press"}});
+    EXPECT_FALSE(
+        page.next([](const PageJson& one) { return one.value("type", "") == "state" && one["machine"] == "press"; }, 5s).is_null());
+    EXPECT_EQ(page.ask({{"cmd", "mode"}, {"mode", "manual"}, {"machine", "press"}})["ok"], true);
+    EXPECT_TRUE(machine.asked("mode").empty());
+}
+
+TEST_F(ServerLimits, AMachineThatStandsStillOrGoesIsToldAsStaleAndComesBack) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_FALSE(page.next("state").is_null());
+    machine.stands = true;
+    const auto stale = page.next("stale", 3s);
+    EXPECT_EQ(stale["why"], "the machine's cycle does not advance");
+    EXPECT_GE(stale["age_ms"], 500);
+    machine.stands = false;
+    EXPECT_FALSE(page.next("state", 3s).is_null());
+    machine.stop();
+    const auto gone =
+        page.next([](const PageJson& one) { return one.value("type", "") == "hello" && one["machines"][0]["online"] == false; }, 5s);
+    EXPECT_FALSE(gone.is_null());
+    machine.start();
+    EXPECT_FALSE(page.next([](const PageJson& one) { return one.value("type", "") == "hello" && one["machines"][0]["online"] == true; }, 5s)
+                     .is_null());
+    EXPECT_FALSE(page.next("state", 3s).is_null());
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi::web
