@@ -23,7 +23,7 @@ SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<
       outputs_at_release_(outputs),
       input_values_(inputs),
       parameters_(parameters),
-      writes_(writes) {
+      given_{std::vector<Write>(writes)} {
     requests_.bind(views_);
 }
 
@@ -67,13 +67,14 @@ bool SlowTask::run_if_released() noexcept {
     context.inputs = inputs_;
     context.outputs = outputs_;
     context.input_values = input_values_;
-    context.output_bits = output_bits_;
-    context.output_lines = output_lines_;
+    context.output_bits = image_.bits;
+    context.output_lines = image_.lines;
     context.parameters = parameters_;
     context.alarms = alarms_;
     context.first_scan = context_.cycle == 0;
-    for (std::size_t i = 0; i < write_count_; ++i) ProgramHost::write(writes_[i].type, writes_[i].address, writes_[i].value);
-    write_count_ = 0;
+    for (std::size_t i = 0; i < given_.count; ++i)
+        ProgramHost::write(given_.writes[i].type, given_.writes[i].address, given_.writes[i].value);
+    given_.count = 0;
     try {
         const ProgramCode code{task_.config.program.c_str(), task_.config.name.c_str()};
         task_.function(program_, context);

@@ -39,10 +39,7 @@ public:
         return state == State::idle || state == State::done;
     }
     /// Bits of each output point and what they mean, known once the bus has laid out its image. Before the first release.
-    void learn_outputs(std::span<const std::uint8_t> bits, std::span<const PointLine> lines) noexcept {
-        output_bits_ = bits;
-        output_lines_ = lines;
-    }
+    void learn_outputs(std::span<const std::uint8_t> bits, std::span<const PointLine> lines) noexcept { image_ = {bits, lines}; }
     /// The input points of a cycle: raw words, and what they mean.
     struct Inputs {
         std::span<const std::int64_t> words;
@@ -52,8 +49,8 @@ public:
     void apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, std::uint64_t& program_alarms) noexcept;
     void renew(axes::AxisRequests& axes) noexcept { requests_.renew(axes); }
     /// Room for what the next run is to find in its operator values; then how much of it is filled. Before release().
-    [[nodiscard]] std::span<Write> writes() noexcept { return writes_; }
-    void set_write_count(std::size_t count) noexcept { write_count_ = count; }
+    [[nodiscard]] std::span<Write> writes() noexcept { return given_.writes; }
+    void set_write_count(std::size_t count) noexcept { given_.count = count; }
     /// Latches everything and hands the task to its thread.
     void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
@@ -94,11 +91,15 @@ private:
     std::vector<axes::AxisView> views_;
     std::vector<std::int64_t> inputs_, outputs_, outputs_at_release_;
     std::vector<PointValue> input_values_;
-    std::span<const std::uint8_t> output_bits_;
-    std::span<const PointLine> output_lines_;
+    struct {
+        std::span<const std::uint8_t> bits;
+        std::span<const PointLine> lines;
+    } image_;  // of the outputs
     std::vector<double> parameters_;
-    std::vector<Write> writes_;
-    std::size_t write_count_ = 0;
+    struct {
+        std::vector<Write> writes;
+        std::size_t count = 0;
+    } given_;  // by people, for the next run
     CycleContext context_;
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
     bool threw_ = false;
