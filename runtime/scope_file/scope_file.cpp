@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<std::byte, 8> magic{std::byte{'T'}, std::byte{'W'}, std::byte{'S'}, std::byte{'C'},
                                          std::byte{'O'}, std::byte{'P'}, std::byte{'E'}, std::byte{0}};
-constexpr std::size_t head_at = magic.size() + 8, block_head = 8, end_bytes = 8;
+constexpr std::size_t head_at = magic.size() + 8, block_head = 12, end_bytes = 8;
 constexpr int level = 3;
 
 Error damaged(const std::string& subject, std::string what) {
@@ -54,6 +54,9 @@ void join_planes(std::span<const std::byte> planes, std::size_t words, std::size
         }
     }
 }
+
+/// Of a block with its head, but for the place of the sum itself.
+std::uint32_t block_sum(std::span<const std::byte> block) { return crc32(block.subspan(block_head), crc32(block.first(8))); }
 
 struct Start {
     ScopeHead head;
@@ -88,11 +91,12 @@ Result<std::vector<Block>> parse_blocks(std::span<const std::byte> bytes, std::s
     while (true) {
         if (bytes.size() - at < block_head) return damaged(subject, fmt::format("it was cut off behind {} rows", rows));
         const auto count = load_le<std::uint32_t>(bytes, at), length = load_le<std::uint32_t>(bytes, at + 4);
-        at += block_head;
-        if (count > most_block_rows || length > bytes.size() - at)
+        if (count > most_block_rows || length > bytes.size() - at - block_head)
             return damaged(subject, fmt::format("it was cut off behind {} rows", rows));
-        const auto packed = bytes.subspan(at, length);
-        at += length;
+        const auto block = bytes.subspan(at, block_head + length), packed = block.subspan(block_head);
+        if (load_le<std::uint32_t>(block, 8) != block_sum(block))
+            return damaged(subject, fmt::format("the check sum of the block behind {} rows is wrong", rows));
+        at += block.size();
         if (count > 0) {
             blocks.push_back({count, packed});
             rows += count;
@@ -154,21 +158,24 @@ Result<void> ScopeFileWriter::write(std::span<const std::uint64_t> columns) {
     const auto refused = [&](std::size_t code) {
         return Error{"recording.write", path_, fmt::format("zstd: {}", ZSTD_getErrorName(code)), "report this"};
     };
-    for (const auto& [what, value] : {std::pair{ZSTD_c_compressionLevel, level}, std::pair{ZSTD_c_checksumFlag, 1}})
-        if (const auto code = ZSTD_CCtx_setParameter(packer.get(), what, value); ZSTD_isError(code) != 0) return refused(code);
+    if (const auto code = ZSTD_CCtx_setParameter(packer.get(), ZSTD_c_compressionLevel, level); ZSTD_isError(code) != 0)
+        return refused(code);
     const auto length =
         ZSTD_compress2(packer.get(), packed_.data() + block_head, packed_.size() - block_head, planes_.data(), planes_.size());
     if (ZSTD_isError(length) != 0) return refused(length);
     store_le<std::uint32_t>(packed_, 0, static_cast<std::uint32_t>(rows));
     store_le<std::uint32_t>(packed_, 4, static_cast<std::uint32_t>(length));
+    const auto block = std::span{packed_}.first(block_head + length);
+    store_le<std::uint32_t>(packed_, 8, block_sum(block));
     rows_ += rows;
-    return put(std::span{packed_}.first(block_head + length));
+    return put(block);
 }
 
 Result<void> ScopeFileWriter::finish() {
     std::array<std::byte, block_head + end_bytes> end{};
     store_le<std::uint32_t>(end, 4, end_bytes);
     store_le<std::uint64_t>(end, block_head, rows_);
+    store_le<std::uint32_t>(end, 8, block_sum(end));
     if (auto ok = put(end); !ok) return ok;
     if (std::fflush(file_.get()) != 0 || ::fsync(::fileno(file_.get())) != 0)
         return Error{"recording.write", path_, fmt::format("the recording is not complete: {}", std::strerror(errno)),

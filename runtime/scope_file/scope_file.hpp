@@ -2,7 +2,7 @@
 // Rows of signals as a file, `.twscope`. Not real-time.
 //
 // Format, little-endian: "TWSCOPE" 00h, version u32, length of the head u32, the head (JSON, scope_head.hpp), CRC-32 of version, length and
-// head u32. Then blocks: rows u32 (1 to 4096), length u32, that many bytes of one zstd frame with its own check sum. A block, decompressed, is
+// head u32. Then blocks: rows u32 (1 to 4096), length u32, CRC-32 of these and the bytes u32, that many bytes: one zstd frame. Decompressed it is
 // words * rows * 8 bytes: for each word of the row 8 planes, the lowest bytes first, one byte a row of the difference to the row before
 // (of the first row in the block: to 0). The last block has 0 rows and 8 bytes, the number of all rows as u64: a file without it was cut off.
 

@@ -1,6 +1,6 @@
 // Any bytes as a recording of signals: an error that says what and what to do, or rows whose signals all lie in them. Where the first byte is odd, the
-// rest is a head (its length in the second byte, in units of 16) and the bytes of one block; what chance would not find is put right: check
-// sum of the head, packing of the block, end mark.
+// rest is a head (its length in the second byte, in units of 16), a number of rows and the packed bytes of one block; what chance would not
+// find is put right: lengths, check sums, end mark.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -33,7 +33,19 @@ Bytes with_head(std::span<const std::byte> in) {
     append(file, static_cast<std::uint32_t>(head.size()));
     file.insert(file.end(), head.begin(), head.end());
     append(file, crc32(std::span{file}.subspan(8)));
-    file.insert(file.end(), rest.begin(), rest.end());
+    const auto block = [&file](std::uint32_t rows, std::span<const std::byte> packed) {
+        Bytes start;
+        append(start, rows);
+        append(start, static_cast<std::uint32_t>(packed.size()));
+        append(start, crc32(packed, crc32(start)));
+        file.insert(file.end(), start.begin(), start.end());
+        file.insert(file.end(), packed.begin(), packed.end());
+    };
+    const auto rows = rest.empty() ? std::uint32_t{0} : std::to_integer<std::uint32_t>(rest[0]);
+    if (rows > 0) block(rows, rest.subspan(1));
+    std::array<std::byte, 8> all{};
+    store_le<std::uint64_t>(all, 0, rows);
+    block(0, all);
     return file;
 }
 

@@ -18,10 +18,10 @@ namespace taktwerk::runtime {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-class ScopeFile : public testing::Test {
+class ScopeFile : public ::testing::Test {
 protected:
     ScopeFile() {
         auto pattern = (fs::temp_directory_path() / "taktwerk-scope-XXXXXX").string();

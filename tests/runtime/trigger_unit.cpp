@@ -13,10 +13,10 @@ namespace taktwerk::runtime {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 using Kind = TriggerCondition::Kind;
 using Mode = TriggerHunt::Mode;
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The places (from 1) of the samples at which it happens.
 std::vector<int> places(TriggerCondition condition, const std::vector<double>& samples) {
@@ -46,18 +46,18 @@ TEST(TriggerDetector, LevelsAndWindowsHoldAtOnce) {
 TEST(TriggerDetector, ABitIsOneOfAWholeNumberThatComes) {
     EXPECT_THAT(places({Kind::bit, 0, 0, 3}, {0b1000, 0b0111, 0b1111, 0b1000, 0b0000, 0b1001}), ElementsAre(3, 6));
     EXPECT_THAT(places({Kind::bit, 0, 0, 0}, {0, 1, 1, 0, 1}), ElementsAre(2, 5));
-    EXPECT_TRUE(places({Kind::bit, 0, 0, 52}, {0, -1, 1e300, nothing}).empty()) << "no whole numbers";
+    EXPECT_TRUE(places({Kind::bit, 0, 0, 52}, {0, -1, 1e300, no_number}).empty()) << "no whole numbers";
 }
 
 TEST(TriggerDetector, WhatIsNoNumberIsPassedOver) {
-    EXPECT_THAT(places({Kind::rising, 2}, {1, nothing, 3}), ElementsAre(3));
-    EXPECT_TRUE(places({Kind::rising, 2}, {nothing, 3}).empty());
-    EXPECT_TRUE(places({Kind::above, nothing}, {1, 2}).empty());
-    EXPECT_TRUE(places({Kind::outside, 1, 2}, {nothing}).empty());
+    EXPECT_THAT(places({Kind::rising, 2}, {1, no_number, 3}), ElementsAre(3));
+    EXPECT_TRUE(places({Kind::rising, 2}, {no_number, 3}).empty());
+    EXPECT_TRUE(places({Kind::above, no_number}, {1, 2}).empty());
+    EXPECT_TRUE(places({Kind::outside, 1, 2}, {no_number}).empty());
     EXPECT_THAT(places({Kind::above, 2}, {std::numeric_limits<double>::infinity()}), ElementsAre(1));
 }
 
-class Hunt : public testing::Test {
+class Hunt : public ::testing::Test {
 protected:
     void write(double value) {
         auto row = ring.begin(++cycle);
