@@ -74,9 +74,9 @@ inline constexpr std::array command_rules{
 };
 
 /// Whose answers may be long: they come over a connection of their own, so that they delay neither a stop nor the renewal of a jog.
-inline constexpr std::array<std::string_view, 13> long_answers{
+inline constexpr std::array<std::string_view, 14> long_answers{
     "layout",     "scope_signals", "scope_read",       "recordings", "recording_signals", "recording_read", "histograms", "bus", "views",
-    "view_image", "alarm_history", "drive_parameters", "log"};
+    "view_image", "alarm_history", "drive_parameters", "log",        "measure_result"};
 [[nodiscard]] bool answers_long(std::string_view command);
 
 /// Null: no such command.

@@ -89,12 +89,14 @@ TEST(MeasuredPlants, BreakawayIsThatOfThePlant) {
     }
 }
 
-// Inertia within 3 %; its inverse is what `rated_acceleration` wants.
+// Inertia within 3 %; its inverse is what `rated_acceleration` wants. The drive without its velocity feed-forward, which comes in steps of a bus cycle: with
+// it the torque that is seen once a cycle is not its mean while the axis accelerates (docs/measuring.md).
 TEST(MeasuredPlants, InertiaAndFrictionFromMovesAreThoseOfThePlant) {
     std::mt19937_64 dice(102);
     for (std::size_t n = 0; n < property_cases(6); ++n) {
         auto drawn = draw(dice);
         SCOPED_TRACE(n);
+        drawn.plant().gains.feed_forward = 0;
         MeasuringRig m(drawn.config);
         const auto run = m.measure(order_of(MeasureKind::following, 60, 200, 3000));
         ASSERT_EQ(m.measure_state().end, MeasureEnd::done);
