@@ -11,7 +11,7 @@ after(() => cell.end());
 const ready = async (page: Page, selector: string): Promise<void> => until(`${selector} may be pressed`, () => page.locator(selector).isEnabled());
 const refusal = (page: Page) => page.locator('.notice[data-kind="refused"]');
 
-test('while one jogs another may look, not jog nor move; stop is everybody\'s', { timeout: 90_000 }, async () => {
+test('while one jogs another may look, not jog nor move; stop is everybody\'s', { timeout: 180_000 }, async () => {
     await cell.powered_and_homed('x');
     await cell.look('#axis/x');
     const second = await cell.another('#axis/x');
