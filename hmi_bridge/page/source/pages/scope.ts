@@ -138,7 +138,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         strip.hidden = !scene || live;
         back.hidden = !session.live;
         mark(root, 'data-kept', scene !== undefined && !live);
-        if (scene && !live) write(what, `${scene.kind === 'file' ? '▤' : '⚠'} ${say(scene.kind === 'file' ? 'scope_shows_file' : 'scope_shows_recording')} ${scene.title}`);
+        if (scene && !live) write(what, `${scene.kind === 'file' ? '▤' : '⚠'} ${say(scene.kind === 'file' ? 'scope_shows_file' : 'scope_shows_recording')} ${scene.about ? `${scene.about} · ` : ''}${scene.title}`);
         const text = !scene && trouble ? say(trouble) : scene && session.setup.channels.length === 0 ? say('scope_no_curve') : '';
         write(hint, text);
         trigger.update();

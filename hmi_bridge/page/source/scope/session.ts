@@ -21,6 +21,8 @@ export interface Marker {
 export interface Scene {
     kind: 'live' | 'recording' | 'file';
     title: string;
+    /** What it is, beside its title. */
+    about?: string;
     cycle_ns: number;
     signals: Map<string, Signal>;
     store: Store;
@@ -208,7 +210,7 @@ export class Session {
         view.follow = false;
         view.show(kept.from, kept.to);
         let failed_at = -1e9;
-        this.enter({ kind: 'recording', title: name, cycle_ns, signals: described(scope), store, view, marker: { cycle: kept.alarm_cycle, kind: 'alarm', text: kept.alarm },
+        this.enter({ kind: 'recording', title: name, about: `${kept.source}: ${kept.alarm}`, cycle_ns, signals: described(scope), store, view, marker: { cycle: kept.alarm_cycle, kind: 'alarm', text: kept.alarm },
             seconds: (cycle) => seconds_of(store, reader, cycle_ns, cycle),
             fetch: async (names) => {
                 if (performance.now() - failed_at < again_after) return false;

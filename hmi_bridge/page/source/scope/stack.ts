@@ -163,6 +163,7 @@ export class Stack {
         const scene = this.session_.scene;
         const part = scene && cycle !== undefined ? (cycle - scene.view.from) / scene.view.span : -1;
         line.hidden = part < 0 || part > 1;
+        mark(line, 'data-left', part > 0.75);  // its label keeps inside
         line.style.transform = `translateX(${(part * this.width).toFixed(1)}px)`;
     }
     private get width(): number {
