@@ -103,4 +103,16 @@ LegRange range_of(const AlignedRun& run, std::size_t leg) {
     return {static_cast<std::size_t>(begin - run.leg.begin()), static_cast<std::size_t>(end - run.leg.begin())};
 }
 
+LegRange steady_part(const AlignedRun& run, LegRange leg) {
+    LegRange out{leg.end, leg.end};
+    for (std::size_t i = leg.begin; i < leg.end; ++i) {
+        if (run.acceleration[i] != 0 || run.velocity[i] == 0) continue;
+        if (out.begin == leg.end) out.begin = i;
+        out.end = i + 1;
+    }
+    if (out.begin == leg.end) return {leg.begin, leg.begin};
+    out.begin += (out.end - out.begin) / 2;
+    return out;
+}
+
 }  // namespace taktwerk::axes::measuring

@@ -48,4 +48,7 @@ struct LegRange {
 /// Empty where there is none of this leg.
 [[nodiscard]] LegRange range_of(const AlignedRun& run, std::size_t leg);
 
+/// Of a leg: where the set-point in effect moves at one velocity, its later half, when what the ramp has stirred up is over. Empty where there is none.
+[[nodiscard]] LegRange steady_part(const AlignedRun& run, LegRange leg);
+
 }  // namespace taktwerk::axes::measuring

@@ -83,7 +83,8 @@ FrictionCurve friction_curve(const AlignedRun& run, const ExcitationPlan& plan, 
     for (const auto& p : out.points) both.add({1, p.velocity > 0 ? 1.0 : -1.0, p.velocity}, p.torque);
     const auto fit = both.solve();
     if (!fit.solved) {
-        out.doubt = out.points.empty() ? Doubt::no_samples : Doubt::too_little_motion;
+        const auto driven = out.points.size() < plan.legs() ? Doubt::ended_early : Doubt::too_little_motion;
+        out.doubt = out.points.empty() ? Doubt::no_samples : driven;
         return out;
     }
     out.gravity = fit.c[0], out.coulomb = fit.c[1], out.viscous = fit.c[2];

@@ -31,9 +31,11 @@ MoveResponse look_at(const AlignedRun& run, LegRange range, std::size_t leg, dou
         move.largest_error = std::max(move.largest_error, std::abs(error));
         if (i < arrived) squares += error * error;
         if (i >= arrived) move.overshoot = std::max(move.overshoot, way * (run.actual[i] - planned.target));
-        if (run.acceleration[i] != 0 || std::abs(run.velocity[i]) < planned.velocity * (1 - 1e-6)) continue;
+    }
+    const auto steady = steady_part(run, range);
+    for (std::size_t i = steady.begin; i < steady.end; ++i) {
         ++move.cruised;
-        sum += way * error;
+        sum += way * (run.reference[i] - run.actual[i]);
         velocity += run.actual_velocity[i];
         velocity_squares += run.actual_velocity[i] * run.actual_velocity[i];
     }
@@ -48,7 +50,8 @@ MoveResponse look_at(const AlignedRun& run, LegRange range, std::size_t leg, dou
     // The last sample outside decides; the watch must go on for a while after it.
     std::size_t inside = range.end;
     while (inside > arrived && std::abs(run.actual[inside - 1] - planned.target) <= window) --inside;
-    move.settled = inside<range.end&& static_cast<double>(range.end - inside) * run.cycle> planned.rest / 10;
+    const double watched = static_cast<double>(range.end - inside) * run.cycle;
+    move.settled = inside != range.end && watched > planned.rest / 10;
     move.settling_time = move.settled ? run.time[inside] - run.time[arrived] : run.time[range.end - 1] - run.time[arrived];
     return move;
 }
