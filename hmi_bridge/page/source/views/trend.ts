@@ -6,7 +6,6 @@ import { Live, Reader } from '../scope/pull';
 import { Channel, Signal } from '../scope/signals';
 import { look } from '../scope/stack';
 import { Store } from '../scope/store';
-import { fixed } from '../numbers';
 import { MachineState } from '../state';
 import { element, write } from '../view';
 import { WidgetLayout } from './builder_views';
@@ -18,6 +17,7 @@ const pull_every = 100, again_after = 2000;
 /** s between two values that the page keeps by itself. */
 const own_step_s = 0.05;
 const height = 190;
+const tick_steps = [1, 2, 5, 10, 20, 30, 60, 120];
 
 /** Where the samples come from. `cycle_s`: s between two of them. */
 interface Source {
@@ -129,12 +129,19 @@ class Trend implements Widget {
         this.drawn_ = source.store.newest;
         const span = (this.layout_.seconds ?? 20) / source.cycle_s, to = source.store.newest;
         this.chart_.set_size(this.host_.clientWidth, height);
-        this.chart_.draw({ store: source.store, from: to - span, to, cycle_s: source.cycle_s, origin: to, signal: () => undefined, number: (key) => this.names_.indexOf(key) + 1, newest: to });
+        this.chart_.draw({ store: source.store, from: to - span, to, ticks: this.ticks(to, source.cycle_s), signal: () => undefined, number: (key) => this.names_.indexOf(key) + 1, newest: to });
+    }
+    /** Seconds before the newest. */
+    private ticks(to: number, cycle_s: number): { cycle: number; text: string }[] {
+        const seconds = this.layout_.seconds ?? 20, step = tick_steps.find((wanted) => seconds / wanted <= 6) ?? seconds;
+        const out: { cycle: number; text: string }[] = [];
+        for (let back = Math.floor(seconds / step) * step; back >= 0; back -= step) out.push({ cycle: to - back / cycle_s, text: back === 0 ? '0 s' : `−${back} s` });
+        return out;
     }
     private make_chart(): LaneChart {
         const channels: Channel[] = this.names_.map((name, i) => ({ name, offset: 0, hidden: false, colour: i, apart: false }));
         const unit = this.layout_.values?.[0]?.unit ?? '';
-        const chart = new LaneChart({ key: 'trend', unit, digital: false, channels }, look(), true, this.host_, (s, step) => `${fixed(s, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)))} s`);
+        const chart = new LaneChart({ key: 'trend', unit, digital: false, channels }, look(), true, this.host_);
         const { minimum, maximum } = this.layout_;
         if (minimum !== undefined && maximum !== undefined) chart.manual = { min: minimum, max: maximum };
         return chart;
