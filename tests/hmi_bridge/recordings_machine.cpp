@@ -79,7 +79,7 @@ TEST_F(Recordings, AnAlarmNamesItsRecordingAndItIsReadAsTheMachineWas) {
     m.world.drive("x")->raise(0x3130);
     run(20);
 
-    const auto alarm = ask({{"cmd", "state"}})["alarms"][0];
+    const auto alarm = ask({{"cmd", "state"}})["state"]["alarms"][0];
     const std::string name = alarm["recording"];
     auto listed = ask({{"cmd", "recordings"}})["recordings"];
     ASSERT_EQ(listed.size(), 1u);
