@@ -113,7 +113,8 @@ StepResponse step_response(const AlignedRun& run, const ExcitationPlan& plan, do
     }
     out.all_settled = !out.moves.empty() && std::ranges::all_of(out.moves, [](const auto& m) { return m.settled; });
     // What is a millionth of the way is no answer of a drive, but none at all.
-    if (out.largest_error.value <= 1e-6 * std::abs(plan.order().distance) && out.doubt == Doubt::none) out.doubt = Doubt::nothing_to_see;
+    const double nothing = std::max(1e-6 * std::abs(plan.order().distance), out.resolution);
+    if (out.largest_error.value <= nothing && out.doubt == Doubt::none) out.doubt = Doubt::nothing_to_see;
     return out;
 }
 
