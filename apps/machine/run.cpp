@@ -338,6 +338,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         const auto say = [&log, &clock](std::string_view text) { log.say(clock.now(), "history", std::string(text)); };
         const auto history = std::make_shared<hmi::AlarmHistory>(
             place.path, hmi_config.history.rows, [&link](const AlarmFact& fact) { return link.describe(fact); }, say);
+        history->set_recordings([&link](const AlarmFact& fact, Instant since) { return link.recording_of(fact, since); });
         (*bridge)->keep(history);
         if (!place.remark.empty() && !options.quiet) say(place.remark);
         writers.push_back(std::make_unique<FileThread>(

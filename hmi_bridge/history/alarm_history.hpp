@@ -46,6 +46,8 @@ public:
     void name_recording(const AlarmFact& fact, Instant since, std::string recording) {
         watch_.name_recording(fact, since, std::move(recording));
     }
+    /// Asked by look(), for the name of the recording around each alarm. Before the first look.
+    void set_recordings(AlarmWatch::RecordingOf recording_of) { watch_.set_recordings(std::move(recording_of)); }
     struct Answer {
         std::uint64_t tag = 0;
         std::string id;

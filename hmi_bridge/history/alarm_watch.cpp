@@ -27,6 +27,13 @@ void AlarmWatch::describe(Known& alarm) const {
     row.manual = std::move(words.manual);
 }
 
+bool AlarmWatch::named(Known& alarm) const {
+    auto& row = alarm.told.row;
+    if (!recording_of_ || row.reaction < Reaction::stop_axis || !row.recording.empty() || now_ - alarm.since > settles) return false;
+    row.recording = recording_of_(alarm.fact, alarm.since);
+    return !row.recording.empty();
+}
+
 AlarmWatch::Known* AlarmWatch::fluttering(const AlarmFact& fact, Instant since, Reaction reaction) {
     if (reaction > Reaction::warn) return nullptr;
     const auto meant = [&](const Known& alarm) {
@@ -107,6 +114,10 @@ std::vector<AlarmWatch::Change> AlarmWatch::look(const runtime::Snapshot& snapsh
         alarm.changed = true;
         describe(alarm);
     }
+
+    for (auto& alarm : known_) alarm.changed = named(alarm) || alarm.changed;
+    for (auto& alarm : left_)
+        if (named(alarm)) named_late_.push_back(alarm.told);
 
     std::vector<Change> changes;
     for (auto& alarm : known_) {

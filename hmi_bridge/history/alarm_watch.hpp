@@ -29,6 +29,11 @@ public:
 
     explicit AlarmWatch(Describe describe) : describe_(std::move(describe)) {}
 
+    /// What was recorded around an alarm that stops something; empty: nothing, or not yet.
+    using RecordingOf = std::function<std::string(const AlarmFact&, Instant since)>;
+    /// Asked by look() for `settles` after each alarm. Before the first look.
+    void set_recordings(RecordingOf recording_of) { recording_of_ = std::move(recording_of); }
+
     struct Change {
         std::uint64_t key = 0;  ///< of the alarm in this run; a later change of it has the same
         AlarmRow row;           ///< as it is now; without an id
@@ -52,9 +57,12 @@ private:
     Known* fluttering(const AlarmFact& fact, Instant since, Reaction reaction);
     Known& known(const AlarmFact& fact, Instant since, Reaction reaction);
     void describe(Known& alarm) const;
+    /// True: it has just got one.
+    [[nodiscard]] bool named(Known& alarm) const;
     [[nodiscard]] std::int64_t utime_of(Instant at) const noexcept;
 
     Describe describe_;
+    RecordingOf recording_of_;
     std::vector<Known> known_;
     std::deque<Known> left_;
     std::vector<Change> named_late_;

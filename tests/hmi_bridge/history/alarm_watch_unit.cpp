@@ -176,6 +176,30 @@ TEST_F(AlarmWatchTest, ANoteThatFluttersIsOneRowThatCounts) {
     EXPECT_EQ(changes[0].row.count, 1u);
 }
 
+TEST_F(AlarmWatchTest, ARecordingIsAskedForWhileTheAlarmIsYoung) {
+    std::string recording;
+    int asked = 0;
+    watch.set_recordings([&](const AlarmFact&, Instant) {
+        ++asked;
+        return recording;
+    });
+    list({alarm(2s)});
+    EXPECT_EQ(look(2s).at(0).row.recording, "");
+    list({});
+    look(2100ms);
+    recording = "demo-following_error";
+    const auto named = look(2200ms);
+    ASSERT_THAT(named, SizeIs(1)) << "gone already";
+    EXPECT_EQ(named[0].row.recording, "demo-following_error");
+    EXPECT_THAT(look(2300ms), IsEmpty());
+    EXPECT_EQ(asked, 3);
+    recording.clear();
+    list({alarm(10s)});
+    look(10s);
+    look(13s);
+    EXPECT_EQ(asked, 4) << "not for ever";
+}
+
 TEST_F(AlarmWatchTest, ARecordingFindsItsAlarmAlsoWhenThatIsGone) {
     list({alarm(2s)});
     const auto begun = look(2s);
