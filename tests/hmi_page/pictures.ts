@@ -2,17 +2,21 @@
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Cell, pause, Taste, unhurried, until } from './cell';
+import { recording_picture, scope_pictures } from './scope_pictures';
 import { small_png } from './small_png';
 
 const folder = process.argv[2] ?? '.';
 mkdirSync(folder, { recursive: true });
 const cell = new Cell();
-const take = async (name: string, hash: string, taste: Taste = {}, settled: () => Promise<void> = () => pause(900)): Promise<void> => {
-    await cell.look(`#${hash}`, taste);
-    await settled();
+const keep = async (name: string): Promise<void> => {
     const picture = small_png(await cell.page.screenshot());
     writeFileSync(join(folder, `${name}.png`), picture);
     console.log(`${name}.png ${(picture.length / 1024).toFixed(0)} kB`);
+};
+const take = async (name: string, hash: string, taste: Taste = {}, settled: () => Promise<void> = () => pause(900)): Promise<void> => {
+    await cell.look(`#${hash}`, taste);
+    await settled();
+    await keep(name);
 };
 /** Held as the page holds it, to its end; a computer that is late lets go, and it begins anew. */
 const measured = async (order: Record<string, unknown>): Promise<void> => {
@@ -71,10 +75,12 @@ try {
         await cell.page.locator('[data-input-point="part_present"] [data-set="0"]').click();
         await pause(800);
     });
+    await scope_pictures(cell, keep);
     await cell.machine.ask({ cmd: 'simulate', line: 'drive-fault y 0x3130' });
     await pause(3000);  // the recording goes on for two seconds
     await take('alarms', 'alarms');
     await take('history', 'alarms/history');
+    await recording_picture(cell, keep);
 } finally {
     await cell.end();
 }
