@@ -104,7 +104,7 @@ Result<ViewAnswers> ViewAnswers::make(const std::vector<View>& views, const View
                     error.subject = widget.where;
                     return error;
                 }
-                out.images_[widget.image] = fmt::format(R"("type":"{}","data":"{}")", image->type, base64(image->bytes));
+                out.images_[widget.image] = fmt::format(R"("media_type":"{}","data":"{}")", image->type, base64(image->bytes));
             }
         }
         all.push_back(std::move(one));

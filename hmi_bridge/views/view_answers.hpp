@@ -21,7 +21,8 @@ public:
 
     /// A JSON array.
     [[nodiscard]] const std::string& views() const noexcept { return views_; }
-    /// The members of the answer, without braces: `"type":"image/png","data":"..."`; nothing: no widget shows such a picture.
+    /// The members of the answer, without braces: `"media_type":"image/png","data":"..."`; nothing: no widget shows such a picture. `type` is
+    /// taken: the page's server says by it what kind a message is.
     [[nodiscard]] std::optional<std::string_view> image(std::string_view name) const;
     [[nodiscard]] std::vector<std::string> images() const;
 

@@ -155,7 +155,7 @@ TEST(ViewPicture, IsSmallAndAFile) {
     image.image_path = path;
     const auto made = ViewAnswers::make({view_of({image})}, view_values_of(cell_config(), cell_layout()));
     ASSERT_TRUE(made) << made.error().text();
-    EXPECT_EQ(made->image("cell.png"), R"("type":"image/png","data":"iVBORw0KGgox")");  // RFC 4648 of 89 50 4e 47 0d 0a 1a 0a 31
+    EXPECT_EQ(made->image("cell.png"), R"("media_type":"image/png","data":"iVBORw0KGgox")");  // RFC 4648 of 89 50 4e 47 0d 0a 1a 0a 31
     std::filesystem::remove(path);
     const auto gone = ViewAnswers::make({view_of({image})}, view_values_of(cell_config(), cell_layout()));
     ASSERT_FALSE(gone);

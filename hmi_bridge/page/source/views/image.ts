@@ -63,7 +63,7 @@ class Picture implements Widget {
             return;
         }
         const bytes = Uint8Array.from(atob(String(answer['data'])), (letter) => letter.charCodeAt(0));
-        this.address_ = URL.createObjectURL(new Blob([bytes], { type: String(answer['type']) }));
+        this.address_ = URL.createObjectURL(new Blob([bytes], { type: String(answer['media_type']) }));
         this.img_.src = this.address_;
         write(this.why_, '');
     }
