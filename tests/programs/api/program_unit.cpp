@@ -91,6 +91,7 @@ public:
     void add(std::string_view, VariableType, const void*, std::string_view, std::string_view) override {}
     void add_task(std::string_view, TaskFunction function) override { functions.push_back(function); }
     void add_block(std::string_view, const void*, std::size_t) override {}
+    void add_operator_value(std::string_view, VariableType, void*, const OperatorValueSpec&, OperatorValueKind) override {}
     std::vector<TaskFunction> functions;
 };
 
