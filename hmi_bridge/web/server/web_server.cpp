@@ -82,8 +82,8 @@ struct WebServer::Impl {
 
     ServerOptions options;
     SiteFiles files;
-    std::unique_ptr<Accounts> accounts;
     asio::io_context io{1};
+    std::unique_ptr<Accounts> accounts;  // behind io: its desk may still hand over what it has computed
     tcp::acceptor acceptor{io};
     asio::steady_timer ticker{io};
     asio::posix::stream_descriptor input{io};

@@ -75,7 +75,7 @@ protected:
     [[nodiscard]] std::string own_origin() const { return "Origin: http://127.0.0.1:" + std::to_string(port) + "\r\n"; }
     HttpAnswer log_in(const std::string& user, const std::string& password, const std::string& more = {}) const {
         return http_request(port, "POST /api/login", own_origin() + "Content-Type: application/json\r\n" + more,
-                            PageJson{{"user", user}, {"password", password}}.dump());
+                            PageJson{{"user", user}, {"password", password}}.dump(), {}, std::chrono::seconds{30});
     }
     /// The header line of the session that a login opens; empty: none.
     std::string cookie_of(const std::string& user) const {

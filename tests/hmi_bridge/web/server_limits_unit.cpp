@@ -119,6 +119,55 @@ TEST_F(ServerLimits, TheSeventeenthPageIsToldThatTheyAreTooMany) {
     EXPECT_TRUE(opened);
 }
 
+TEST_F(ServerLimits, StrangersKeepNoUserOut) {
+    ServerOptions options;
+    options.users = users_file();
+    serve(options);
+    std::deque<PageClient> strangers;
+    for (std::size_t i = 0; i < 2 * WebServer::most_strangers; ++i) {
+        strangers.emplace_back();
+        ASSERT_TRUE(strangers.back().open(port)) << i;
+    }
+    EXPECT_TRUE(strangers.front().is_closed(3s)) << "the oldest gave way";
+    PageClient page;
+    ASSERT_TRUE(page.open(port, cookie_of("olga")));
+    EXPECT_EQ(page.next("hello")["user"], "olga");
+}
+
+TEST_F(ServerLimits, HostileMessagesAreAnsweredAndOversizeOnesEndThePage) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    for (const std::string& text :
+         {std::string("{"), std::string("null"), std::string(R"({"type":"command","id":-1,"cmd":"stop"})"), std::string(R"({"type":"x"})"),
+          std::string(R"({"type":"command","id":1,"id":2,"cmd":"stop"})"), std::string(60'000, '[')}) {
+        ASSERT_TRUE(page.say_text(text));
+        EXPECT_FALSE(page.next("error").is_null()) << text.substr(0, 60);
+    }
+    EXPECT_EQ(page.ask({{"cmd", "stop"}})["ok"], true) << "the connection stayed";
+    page.say_text("\"" + std::string(PageMessage::longest, 'x') + "\"");
+    EXPECT_TRUE(page.is_closed(3s));
+
+    PageClient binary;
+    ASSERT_TRUE(binary.open(port));
+    binary.say_bytes(PageClient::frame(0x82, "{}"));
+    EXPECT_TRUE(binary.is_closed(3s));
+    PageClient no_text;  // RFC 6455 section 8.1: a text that is no UTF-8 fails the connection
+    ASSERT_TRUE(no_text.open(port));
+    no_text.say_text("\"\xff\xfe\"");
+    EXPECT_TRUE(no_text.is_closed(3s));
+    PageClient unmasked;
+    ASSERT_TRUE(unmasked.open(port));
+    unmasked.say_bytes(std::string("\x81\x02{}"));
+    EXPECT_TRUE(unmasked.is_closed(3s));
+    PageClient flood;
+    ASSERT_TRUE(flood.open(port));
+    for (int i = 0; i < 1000; ++i)
+        if (!flood.say_text("{}")) break;
+    EXPECT_TRUE(flood.is_closed(3s));
+}
+
 TEST_F(ServerLimits, AViewersStopNeedsNoPlaceAtTheMachine) {
     ServerOptions options;
     options.role = Role::viewer;
