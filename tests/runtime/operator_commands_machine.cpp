@@ -433,6 +433,57 @@ TEST_F(Commands, AResetByAnotherPartyThanTheOwnerLeavesControlPowerAndPlaceAsThe
     m().expect_no_jump();
 }
 
+// The operator's factor, under a program that knows nothing of it; it outlives the program, and no limit is passed by it.
+TEST(OperatorsOverride, HoldsUnderAProgramUntilItIsChanged) {
+    TestMachine m{with_program(2, &entry_of<RunsX>)};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s));
+    ASSERT_EQ(m.command(override_velocity, 0, false, 0.5).answer, Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 25.0; }, 1s));
+    EXPECT_EQ(m.axis(0).limiter, axes::VelocityLimiter::override_factor);
+    EXPECT_EQ(m.axis(0).owner, Owner::program);
+    EXPECT_EQ(m.axis(1).operators_override, 1) << "one axis alone";
+    ASSERT_EQ(m.command(override_velocity, 0xFFFF, false, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 0.0; }, 1s));
+    EXPECT_EQ(m.axis(0).state, AxisState::ContinuousMotion) << "it is halted, not stopped";
+    EXPECT_EQ(m.axis(1).operators_override, 0);
+    ASSERT_EQ(m.command(override_velocity, 0xFFFF, false, 0.2).answer, Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 10.0; }, 1s));
+    ASSERT_EQ(m.command(program_stop, 0).answer, Answer::accepted);
+    ASSERT_EQ(m.mode(Mode::manual).answer, Answer::accepted);
+    m.run(1s);
+    EXPECT_EQ(m.axis(0).operators_override, 0.2);
+    for (const double bad : {-0.1, 1.1, nan_value}) EXPECT_EQ(m.command(override_velocity, 0, false, bad).answer, Answer::bad_value) << bad;
+    EXPECT_EQ(m.command(override_velocity, 2, false, 1).answer, Answer::unknown_name);
+    m.expect_no_jump();
+}
+
+TEST(OperatorsView, PeaksAndTimesBeginAnewWhenSomebodyAsksForIt) {
+    TestMachine m{with_program(1, &entry_of<RunsX>)};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s));
+    const auto peak = m.state().following_peaks[0];
+    EXPECT_LT(peak.minimum, peak.maximum);
+    EXPECT_GE(peak.maximum, m.axis(0).following_error);
+    ASSERT_EQ(m.command(stop, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 0 && m.axis(0).following_error == 0; }, 2s));
+    ASSERT_EQ(m.command(reset_peaks, 0).answer, Answer::accepted);
+    m.run(2ms);
+    EXPECT_EQ(m.state().following_peaks[0].maximum, 0);
+
+    const auto runs = [&] {
+        std::uint64_t all = 0;
+        for (std::size_t i = 0; i < Histogram::bucket_count; ++i) all += m.machine->times().cycle->compute.bucket(i);
+        return all;
+    };
+    EXPECT_EQ(runs(), m.state().cycle) << "every cycle since it was armed, once";
+    EXPECT_GT(m.machine->times().tasks->at(0).longest().cycle, 0u);
+    EXPECT_LE(m.machine->times().cycle->compute.longest().cycle, m.state().cycle);
+    ASSERT_EQ(m.command(reset_statistics).answer, Answer::accepted);
+    EXPECT_LE(runs(), 10u);
+    EXPECT_GT(m.state().statistics.cycles, 100u) << "counters count on";
+}
+
 TEST_F(Commands, AFullInboxRefusesItsSender) {
     start();
     OperatorCommand c;
