@@ -54,7 +54,9 @@ TEST(CommandTable, EveryRowIsACommandOfTheSocketOnce) {
 // What may begin a motion or change something is nobody's who only looks; a stop is everybody's.
 TEST(CommandTable, AViewerLooksAndStops) {
     for (const auto& rule : command_rules) {
-        if (rule.least == Role::viewer) EXPECT_FALSE(rule.moves) << rule.command;
+        if (rule.least == Role::viewer) {
+            EXPECT_FALSE(rule.moves) << rule.command;
+        }
     }
     for (const auto& word : command_words) EXPECT_EQ(find_rule(word.word)->least == Role::viewer, word.word == "stop") << word.word;
     EXPECT_EQ(find_rule("stop")->least, Role::viewer);
