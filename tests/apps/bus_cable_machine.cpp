@@ -94,6 +94,7 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
     text = std::regex_replace(text, std::regex("interface: simulated"), "interface: twk0");
     text =
         std::regex_replace(text, std::regex("library: pick_and_place.so"), "library: " TAKTWERK_BINARY_DIR "/programs/pick_and_place.so");
+    text = std::regex_replace(text, std::regex("demo-cell.svg"), TAKTWERK_SOURCE_DIR "/config/machines/demo-cell.svg");
     std::ofstream(file) << text << "\n";
     EXPECT_EQ(run(cable.at_master({taktwerk, "run", file}), &said), exit_bus) << said;
     EXPECT_THAT(said, HasSubstr("another EtherCAT master is sending on this cable"));

@@ -80,7 +80,8 @@ TEST_F(PageBesideTheMachine, TheInstalledPackageCarriesItAndNeedsNoNode) {
     const auto prefix = std::filesystem::temp_directory_path() / ("taktwerk-page-" + std::to_string(::getpid()));
     Child install({TAKTWERK_CMAKE, "--install", TAKTWERK_BINARY_DIR, "--component", "runtime", "--prefix", prefix.string()});
     ASSERT_EQ(install.wait(120s), 0) << install.text();
-    Child server({"/usr/bin/env", "-i", "PATH=/nowhere", (prefix / "bin" / "taktwerk").string(), "hmi", "--listen", "127.0.0.1:0"});
+    Child server({"/usr/bin/env", "-i", "PATH=/nowhere", (prefix / "bin" / "taktwerk").string(), "hmi", "--listen", "127.0.0.1:0",
+                  "--audit", (prefix / "audit").string()});
     ASSERT_TRUE(server.says("the page: http://127.0.0.1:", 20s)) << server.text();
     const auto port = static_cast<std::uint16_t>(std::stoi(server.text().substr(server.text().find("127.0.0.1:") + 10, 6)));
     for (const char* file : {"/", "/page.js", "/page.css", "/icon.svg"}) {
