@@ -25,12 +25,11 @@ public:
         auto& bucket = buckets_[Histogram::bucket_of(ns)];
         bucket.store(bucket.load(relaxed) + 1, relaxed);
         if (ns < longest_.load(relaxed) && longest_cycle_.load(relaxed) != 0) return;
-        // Odd while the two do not belong together.
+        // Odd while the two do not belong together. Who reads one of them (acquire) sees that, too: no fences, which the thread sanitizer does not know.
         const auto version = version_.load(relaxed);
         version_.store(version + 1, relaxed);
-        std::atomic_thread_fence(std::memory_order_release);
-        longest_.store(ns, relaxed);
-        longest_cycle_.store(cycle, relaxed);
+        longest_.store(ns, std::memory_order_release);
+        longest_cycle_.store(cycle, std::memory_order_release);
         version_.store(version + 2, std::memory_order_release);
     }
     /// The same thread: as if nothing had been recorded. Real-time safe, 4 KB of stores.
@@ -38,9 +37,8 @@ public:
         for (auto& bucket : buckets_) bucket.store(0, relaxed);
         const auto version = version_.load(relaxed);
         version_.store(version + 1, relaxed);
-        std::atomic_thread_fence(std::memory_order_release);
-        longest_.store(0, relaxed);
-        longest_cycle_.store(0, relaxed);
+        longest_.store(0, std::memory_order_release);
+        longest_cycle_.store(0, std::memory_order_release);
         version_.store(version + 2, std::memory_order_release);
     }
 
@@ -50,8 +48,7 @@ public:
     [[nodiscard]] Longest longest() const noexcept {
         for (;;) {
             const auto before = version_.load(std::memory_order_acquire);
-            const Longest seen{Duration{longest_.load(relaxed)}, longest_cycle_.load(relaxed)};
-            std::atomic_thread_fence(std::memory_order_acquire);
+            const Longest seen{Duration{longest_.load(std::memory_order_acquire)}, longest_cycle_.load(std::memory_order_acquire)};
             if (before % 2 == 0 && version_.load(relaxed) == before) return seen;
         }
     }

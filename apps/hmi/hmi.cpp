@@ -23,6 +23,7 @@ namespace taktwerk::apps {
 namespace {
 
 struct HmiOptions {
+    int rate = 20;
     std::string listen, page, audit, users, role = "engineer";
     std::vector<std::string> machines, names, proxies;
     bool end_with_input = false;
@@ -96,6 +97,7 @@ int serve(const HmiOptions& options) {
     server_options.role = hmi::web::role_of(options.role).value_or(hmi::web::Role::viewer);
     server_options.version = sdk_version;
     server_options.end_with_input = options.end_with_input;
+    server_options.rate = options.rate;
     server_options.users = options.users;
     server_options.names = options.names;
     server_options.proxies = options.proxies;
@@ -128,6 +130,7 @@ void add_hmi(CLI::App& app, Action& action) {
     sub->add_option("--role", options->role, "what the page may where nobody logs in: viewer, operator, engineer, admin")
         ->check(CLI::IsMember({"viewer", "operator", "engineer", "admin"}))
         ->capture_default_str();
+    sub->add_option("--rate", options->rate, "values a second to each page")->check(CLI::Range(1, 200))->capture_default_str();
     sub->add_option("--page", options->page, "the folder of the page's files");
     sub->add_option(
         "--audit", options->audit,

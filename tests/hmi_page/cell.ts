@@ -77,7 +77,7 @@ export class Cell {
         writeFileSync(file, (options.machine ?? quiet)(demo).replace(/^hmi:$/m, `hmi:\n  socket: ${this.socket}`));
         this.role_ = options.role ?? this.role_;
         this.users_ = options.users ?? '';
-        const runtime = this.child([command, 'run', file], source);
+        const runtime = this.child([command, 'run', file, '--recordings', join(this.folder, 'recordings'), '--history', join(this.folder, 'history')], source);
         await until('the machine runs', async () => {
             if (runtime.process.exitCode !== null) throw new Error(`taktwerk run ended:\n${runtime.said()}`);
             try {

@@ -13,8 +13,6 @@
 namespace taktwerk::hmi::web {
 
 struct WebServer::Impl {
-    static constexpr Duration tick = 50ms;  // of values, and of everything that has a time-out
-
     Impl(ServerOptions given, SiteFiles its_files, std::unique_ptr<Accounts> its_accounts)
         : options(std::move(given)),
           files(std::move(its_files)),
@@ -47,7 +45,7 @@ struct WebServer::Impl {
         }
     }
     void beat() {
-        ticker.expires_after(tick);
+        ticker.expires_after(Duration{1s} / options.rate);  // of values, and of everything that has a time-out
         ticker.async_wait([this](error_code failure) {
             if (failure) return;
             step(now());

@@ -23,6 +23,7 @@ struct ServerOptions {
     std::vector<std::string> names;    ///< more names of this server, as browsers write them into `Host`: "hmi.example", "hmi.example:8443"
     std::vector<std::string> proxies;  ///< addresses whose X-Forwarded-For and X-Forwarded-Proto are believed
     std::string version;
+    int rate = 20;                                    ///< values a second to each page, 1 to 200
     bool end_with_input = false;                      ///< ends when standard input does
     std::function<void(const std::string&)> audit{};  ///< one JSON object a line: who, from where, what, the answer
     std::function<void(const Error&)> say{};          ///< what whoever runs the server should know; the server goes on

@@ -82,7 +82,7 @@ export function alarm_history(desk: Desk): Page {
     const body = element('tbody');
     const rows = new Rows(body, (alarm: PastAlarm) => String(alarm.id), (alarm) => {
         const lasted = element('td', { class: 'number' });
-        const details = element('details', {}, element('summary', {}, in_language(alarm)), element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause || '–'),
+        const details = element('details', {}, element('summary', {}, in_language(alarm)), element('dl', { class: 'values words' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause || '–'),
             element('dt', {}, say('remedy')), element('dd', { lang: 'en' }, alarm.remedy || '–'), ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : []),
             element('dt', {}, say('reaction')), element('dd', {}, word('reaction', alarm.reaction), ' · ', element('span', { lang: 'en' }, alarm.name))));
         const root = element('tr', { 'data-past-alarm': alarm.name }, element('td', { class: 'number' }, local_time(alarm.utime)), lasted, element('th', { scope: 'row' }, where(alarm.source)), element('td', {}, details),

@@ -107,7 +107,7 @@ export function system(desk: Desk): Page {
     });
     const licence_body = element('tbody');
     const licence_rows = new Rows(licence_body, (of: Licence) => of.name, ({ name, version, licence, used }) =>
-        ({ root: element('tr', {}, element('th', { scope: 'row', lang: 'en' }, name), element('td', {}, version), element('td', {}, licence), element('td', { class: 'doc' }, say(used))) }), () => undefined);
+        ({ root: element('tr', {}, element('th', { scope: 'row', lang: 'en' }, name), element('td', {}, version), element('td', { lang: 'en' }, licence), element('td', { class: 'doc' }, say(used))) }), () => undefined);
     licence_rows.update(page_licences);
     return {
         root: element('div', { class: 'page system' },
