@@ -3,7 +3,7 @@ import { ChildProcess, spawn } from 'node:child_process';
 import { copyFileSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { Browser, BrowserContext, chromium, Page } from 'playwright-core';
+import { Browser, BrowserContext, chromium, Locator, Page } from 'playwright-core';
 import { Line } from './line';
 import { Json, Machine } from './machine';
 
@@ -137,6 +137,12 @@ export class Cell {
         });
         for (const pid of mine) process.kill(pid, signal);
         return mine.length;
+    }
+    /** The browser takes the pointer away from a button that is held; it tells so with the pointer's next message. */
+    async lose_capture(button: Locator): Promise<void> {
+        await button.evaluate((held) => held.releasePointerCapture(1));
+        const box = await button.boundingBox();
+        if (box) await this.page.mouse.move(box.x + box.width / 2 + 2, box.y + box.height / 2 + 2);
     }
     /** A fresh page, as of somebody who comes for the first time. */
     async look(hash = '', taste: Taste = {}): Promise<void> {

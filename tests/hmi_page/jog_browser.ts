@@ -99,7 +99,7 @@ const endings: [string, () => Promise<unknown> | void, (() => Promise<void> | vo
     ['the button let go', () => cell.page.mouse.up()],
     ['the finger beside the button', () => cell.page.mouse.move(700, 700)],
     ['pointercancel', () => jog('+').evaluate((button) => button.dispatchEvent(new PointerEvent('pointercancel', { pointerId: 1, bubbles: true })))],
-    ['the capture lost', () => jog('+').evaluate((button) => button.releasePointerCapture(1))],
+    ['the capture lost', () => cell.lose_capture(jog('+'))],
     ['the window\'s blur', () => cell.page.evaluate(() => window.dispatchEvent(new Event('blur')))],
     ['a hidden page', () => cell.page.evaluate(() => {
         Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });

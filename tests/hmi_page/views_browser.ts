@@ -122,7 +122,7 @@ test('what is refused is told, and nothing is shown as if it were done', async (
 
 const endings: [string, () => Promise<unknown> | void, (() => Promise<unknown> | void)?][] = [
     ['let go', () => cell.page.mouse.up()],
-    ['the capture lost', () => start().evaluate((button) => button.releasePointerCapture(1))],
+    ['the capture lost', () => cell.lose_capture(start())],
     ['the window\'s blur', () => cell.page.evaluate(() => window.dispatchEvent(new Event('blur')))],
     ['a second finger', () => cell.page.touchscreen.tap(700, 300)],
     ['another page of it', () => cell.page.evaluate(() => { location.hash = '#overview'; })],
