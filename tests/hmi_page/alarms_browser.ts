@@ -27,6 +27,10 @@ test('it stands on every page and in both languages, with cause and remedy', { t
     await cell.page.locator('[data-do="language"]').click();
     await until('Chinese', async () => ((await card.textContent()) ?? '').includes(alarm.chinese));
     assert.notEqual(alarm.chinese, alarm.english);
+    // Cause, remedy and reset, too; and the move that the fault ended.
+    const left = await cell.page.locator('.page.alarms dd:not(:last-of-type), .page.alarms .event > span:last-of-type, .page.alarms .event small').evaluateAll((cells) => cells.map((one) => one.textContent ?? '').filter((text) => !/[\u4e00-\u9fff]/.test(text)));
+    assert.deepEqual(left, []);
+    assert.ok(((await cell.page.locator('.page.alarms').textContent()) ?? '').includes('电网缺一相'));
 });
 
 test('one click opens what was recorded around it', { timeout: 90_000 }, async () => {

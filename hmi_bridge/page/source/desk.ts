@@ -1,6 +1,7 @@
 // What the pages share: the connection, giving a command and telling its answer, buttons that know when they may be pressed.
 import { Answer, Link, Request } from './link';
 import { Ending, JogHold } from './jog';
+import { said } from './sentences/said';
 import { AxisLayout, AxisState, MachineState } from './state';
 import { Key, say, word } from './texts';
 import { element, mark, write } from './view';
@@ -46,7 +47,7 @@ export class Desk {
         this.given.unshift({ at, request, answer });
         this.given.length = Math.min(this.given.length, most_given);
         if (!answer.ok) this.refused(answer);
-        else if (answer.note) this.tell('note', answer.note);
+        else if (answer.note) this.tell('note', said(answer.note).text);
         else if (this.notice.dataset['kind'] === 'refused') this.hush();
         return answer;
     }
@@ -54,7 +55,7 @@ export class Desk {
         const { code = '', subject = '', what = '', remedy = '' } = answer.error ?? {};
         if (code === 'page.no_connection') this.tell('refused', say('no_connection'));
         else if (code === 'page.no_answer') this.tell('refused', say('no_answer'));
-        else this.tell('refused', `${say('refused')}: ${subject ? subject + ': ' : ''}${what}${remedy ? ' – ' + remedy : ''}`);
+        else this.tell('refused', `${say('refused')}: ${subject ? subject + ': ' : ''}${said(what).text}${remedy ? ' – ' + said(remedy).text : ''}`);
     }
     tell(kind: 'refused' | 'note', text: string): void {
         this.notice.dataset['kind'] = kind;

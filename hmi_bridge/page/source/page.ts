@@ -5,6 +5,7 @@ import { Clock, Ending, JogHold, watch_page } from './jog';
 import { Link } from './link';
 import { Entry, pages } from './pages/list';
 import { remember, remembered } from './remembered';
+import { said } from './sentences/said';
 import { choose_language, current_language, Key, say, texts } from './texts';
 import { element, mark } from './view';
 
@@ -14,7 +15,7 @@ const hold = new JogHold({
     jog: async (axis, velocity, press) => {
         const answer = await link.request(press ? { cmd: 'jog', axis, velocity, press } : { cmd: 'jog', axis, velocity });
         if (!answer.ok && velocity !== 0) desk.refused(answer);
-        else if (press && answer.note) desk.tell('note', answer.note);
+        else if (press && answer.note) desk.tell('note', said(answer.note).text);
         return answer.ok;
     },
     blocked: () => !link.opened || link.stalled,

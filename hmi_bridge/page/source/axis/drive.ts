@@ -2,6 +2,7 @@
 import { alarms_of_axis, in_words } from '../alarm_words';
 import { Desk, Page, panel, Values, write_lamp } from '../desk';
 import { hex } from '../numbers';
+import { said } from '../sentences/said';
 import { AxisLayout, AxisState, MachineState } from '../state';
 import { Key, say, word } from '../texts';
 import { element, write } from '../view';
@@ -18,7 +19,7 @@ const bad_bits = [3, 7, 11];
 export function drive_page(desk: Desk, layout: AxisLayout): Page {
     const status = new Values();
     const bits = status_bits.map(([bit]) => element('li', { 'data-bit': String(bit) }));
-    const fault_text = element('strong', { 'data-tone': 'bad' }), fault_remedy = element('small', { lang: 'en' });
+    const fault_text = element('strong', { 'data-tone': 'bad' }), fault_remedy = element('small');
     const fault = element('div', { class: 'event-line', hidden: true, 'data-part': 'fault' }, fault_text, fault_remedy);
     const parameters = new DriveParameters(desk, layout);
     const root = element('div', { class: 'page axis drive' }, axis_tabs(desk, layout.name, 'drive'),
@@ -49,7 +50,7 @@ export function drive_page(desk: Desk, layout: AxisLayout): Page {
             fault.hidden = !alarm;
             if (alarm) {
                 write(fault_text, `⚠ ${in_words(alarm)}`);
-                write(fault_remedy, `${alarm.cause}. ${alarm.remedy}${alarm.manual ? ` (${alarm.manual})` : ''}`);
+                write(fault_remedy, [said(alarm.cause).text, said(alarm.remedy).text, alarm.manual ?? ''].filter((text) => text !== '').join(' · '));
             }
             parameters.update(axis);
         },

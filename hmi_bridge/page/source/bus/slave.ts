@@ -1,5 +1,6 @@
 // One slave of the bus: what it is, its ports with their counters, its clock, what it says of itself.
 import { hex, microseconds } from '../numbers';
+import { said } from '../sentences/said';
 import { say } from '../texts';
 import { element, mark, Rows, write } from '../view';
 import { Values } from '../desk';
@@ -11,10 +12,10 @@ export class SlaveDetails {
     private readonly body_ = element('tbody');
     private readonly said_ = element('p', { class: 'hint', lang: 'en' });
     private readonly ports_ = new Rows(this.body_, (port: Port & { number: number }) => String(port.number), (port) => {
-        const cells = [0, 1, 2, 3, 4].map((i) => element('td', i === 0 ? { lang: 'en' } : { class: 'number' }));
+        const cells = [0, 1, 2, 3, 4].map((i) => element('td', i === 0 ? {} : { class: 'number' }));
         return { root: element('tr', {}, element('th', { scope: 'row' }, String(port.number)), ...cells), cells };
     }, (row, port) => {
-        [port.link ? `● ${port.at_other_end || say('link')}` : `○ ${say('no_link')}`, port.lost_links, port.rx_errors, port.invalid_frames, port.forwarded_errors].forEach((text, i) => {
+        [port.link ? `● ${said(port.at_other_end).text || say('link')}` : `○ ${say('no_link')}`, port.lost_links, port.rx_errors, port.invalid_frames, port.forwarded_errors].forEach((text, i) => {
             const cell = row.cells[i];
             if (!cell) return;
             write(cell, String(text));

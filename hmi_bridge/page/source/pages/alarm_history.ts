@@ -5,6 +5,7 @@ import { Inquiry } from '../inquiry';
 import { Request } from '../link';
 import { duration } from '../numbers';
 import { csv, file_time, local_time, save_file } from '../save';
+import { said, said_element } from '../sentences/said';
 import { MachineState } from '../state';
 import { current_language, Key, say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
@@ -76,14 +77,14 @@ export function alarm_history(desk: Desk): Page {
     const export_all = async (): Promise<void> => {
         while (listed.length < most_exported && !whole && desk.link.opened) await older();
         save_file(`${desk.link.machine}-alarms-${file_time()}.csv`, 'text/csv', csv([(['since', 'until', 'source', 'text', 'name', 'reaction', 'cause', 'remedy', 'manual', 'recording'] as const).map((key) => say(key)),
-            ...listed.map((alarm) => [local_time(alarm.utime), alarm.cleared_utime ? local_time(alarm.cleared_utime) : '', where(alarm.source), in_language(alarm), alarm.name, word('reaction', alarm.reaction), alarm.cause, alarm.remedy, alarm.manual, alarm.recording])]));
+            ...listed.map((alarm) => [local_time(alarm.utime), alarm.cleared_utime ? local_time(alarm.cleared_utime) : '', where(alarm.source), in_language(alarm), alarm.name, word('reaction', alarm.reaction), said(alarm.cause).text, said(alarm.remedy).text, alarm.manual, alarm.recording])]));
     };
 
     const body = element('tbody');
     const rows = new Rows(body, (alarm: PastAlarm) => String(alarm.id), (alarm) => {
         const lasted = element('td', { class: 'number' });
-        const details = element('details', {}, element('summary', {}, in_language(alarm)), element('dl', { class: 'values words' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause || '–'),
-            element('dt', {}, say('remedy')), element('dd', { lang: 'en' }, alarm.remedy || '–'), ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : []),
+        const details = element('details', {}, element('summary', {}, in_language(alarm)), element('dl', { class: 'values words' }, element('dt', {}, say('cause')), said_element('dd', alarm.cause || '–'),
+            element('dt', {}, say('remedy')), said_element('dd', alarm.remedy || '–'), ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : []),
             element('dt', {}, say('reaction')), element('dd', {}, word('reaction', alarm.reaction), ' · ', element('span', { lang: 'en' }, alarm.name))));
         const root = element('tr', { 'data-past-alarm': alarm.name }, element('td', { class: 'number' }, local_time(alarm.utime)), lasted, element('th', { scope: 'row' }, where(alarm.source)), element('td', {}, details),
             element('td', {}, recording_link(alarm.recording)));

@@ -2,6 +2,7 @@
 import { in_words, key_of, stops, where } from '../alarm_words';
 import { Desk, Page, panel, sub_tabs } from '../desk';
 import { duration } from '../numbers';
+import { said, said_element, write_said } from '../sentences/said';
 import { CommandEvent, MachineState } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
@@ -28,8 +29,8 @@ function standing_alarms(desk: Desk): Page {
         const root = element('article', { class: 'alarm', 'data-alarm': alarm.name },
             element('header', {}, status, element('strong', {}, where(alarm.source)), since),
             element('p', { class: 'alarm-text' }, in_words(alarm)),
-            element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause), element('dt', {}, say('remedy')),
-                element('dd', { lang: 'en' }, alarm.remedy), element('dt', {}, say('how_to_reset')), element('dd', { lang: 'en' }, alarm.reset),
+            element('dl', { class: 'values' }, element('dt', {}, say('cause')), said_element('dd', alarm.cause), element('dt', {}, say('remedy')),
+                said_element('dd', alarm.remedy), element('dt', {}, say('how_to_reset')), said_element('dd', alarm.reset),
                 element('dt', {}, say('reaction')), element('dd', {}, word('reaction', alarm.reaction), ' · ', element('span', { lang: 'en' }, alarm.name)),
                 ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : [])), recorded);
         return { root, status, since, recorded };
@@ -43,12 +44,14 @@ function standing_alarms(desk: Desk): Page {
     const calm = element('p', { class: 'hint' }, say('no_refusals'));
     const events = element('div', { class: 'event-list' });
     const event_rows = new Rows(events, (event: CommandEvent) => String(event.number), () => {
-        const when = element('span', { class: 'alarm-since' }), what = element('span', { lang: 'en' }), remedy = element('small', { lang: 'en' });
+        const when = element('span', { class: 'alarm-since' }), what = element('span'), remedy = element('small');
         return { root: element('div', { class: 'event' }, when, what, remedy), when, what, remedy };
     }, (row, event) => {
         write(row.when, say('ago', { age: duration(Math.max(0, ((desk.link.state?.time_ns ?? 0) - event.time_ns) / 1e9)) }) + (event.times > 1 ? ` ×${event.times}` : ''));
-        write(row.what, `${event.axis ? event.axis + ': ' : ''}${event.english}`);
-        write(row.remedy, event.remedy);
+        const { text, known } = said(event.english);
+        write(row.what, `${event.axis ? event.axis + ': ' : ''}${text}`);
+        mark(row.what, 'lang', known ? false : 'en');
+        write_said(row.remedy, event.remedy);
     });
     return {
         root: element('div', { class: 'page alarms' }, element('div', { class: 'bar' }, alarm_tabs('standing'), element('span', { class: 'space' }), acknowledge, reset), none, list, panel('refusals', calm, events)),

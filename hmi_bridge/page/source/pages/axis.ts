@@ -6,6 +6,7 @@ import { axis_of, axis_tabs } from '../axis/tabs';
 import { AxisValues } from '../axis/values';
 import { why } from '../axis/why';
 import { Desk, Page } from '../desk';
+import { write_said } from '../sentences/said';
 import { MachineState } from '../state';
 import { say } from '../texts';
 import { element, write } from '../view';
@@ -19,7 +20,7 @@ export function axis_page(desk: Desk, [wanted = '', part = '']: readonly string[
 
     const head = new AxisHead(desk, layout), values = new AxisValues(desk, name, layout.unit), hand = hands(desk, name);
     const why_title = element('h2'), why_text = element('ul', { class: 'why', 'data-value': 'why' });
-    const refusal = element('span'), refused = element('span', { lang: 'en', 'data-value': 'last_refusal' });
+    const refusal = element('span'), refused = element('span', { 'data-value': 'last_refusal' });
     const root = element('div', { class: 'page axis' }, axis_tabs(desk, name, 'hand'), head.root,
         element('div', { class: 'columns' }, hand.root, element('div', { class: 'stack' }, element('section', { class: 'panel' }, why_title, why_text, element('p', { class: 'refusal' }, refusal, refused)), values.root)));
     return {
@@ -34,7 +35,7 @@ export function axis_page(desk: Desk, [wanted = '', part = '']: readonly string[
             write(why_title, reason.title);
             const last = machine.events.filter((event) => event.axis === name).at(-1);
             write(refusal, last ? say('why_last_refusal') : '');
-            write(refused, last?.english ?? '');
+            write_said(refused, last?.english ?? '');
             const sentences = reason.sentences;
             if (why_text.dataset['shown'] !== sentences.join('\n')) {
                 why_text.dataset['shown'] = sentences.join('\n');

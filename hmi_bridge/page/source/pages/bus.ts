@@ -6,6 +6,7 @@ import { Desk, Page, panel, Values } from '../desk';
 import { Inquiry } from '../inquiry';
 import { microseconds } from '../numbers';
 import { Alarm, MachineState } from '../state';
+import { said, said_element } from '../sentences/said';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
 
@@ -44,17 +45,17 @@ export function bus(desk: Desk): Page {
     let chosen = 0;
     const tree = new BusTree((slave) => { chosen = known?.slaves.indexOf(slave) ?? 0; }, (slave) => known?.slaves[chosen] === slave);
     const details = new SlaveDetails();
-    const said_list = element('div', { class: 'said' }), calm = element('p', { class: 'calm' }, `✓ ${say('bus_calm')}`), old = element('p', { class: 'hint' });
-    const said = new Rows(said_list, (item: Said) => item.text, (item) => {
-        const text = element('strong', item.tone === 'bad' ? {} : { lang: 'en' }, `${item.tone === 'idle' ? 'ⓘ' : '⚠'} ${item.text}`);
+    const told_list = element('div', { class: 'said' }), calm = element('p', { class: 'calm' }, `✓ ${say('bus_calm')}`), old = element('p', { class: 'hint' });
+    const told = new Rows(told_list, (item: Said) => item.text, (item) => {
+        const text = element('strong', item.tone === 'bad' || said(item.text).known ? {} : { lang: 'en' }, `${item.tone === 'idle' ? 'ⓘ' : '⚠'} ${item.tone === 'bad' ? item.text : said(item.text).text}`);
         mark(text, 'data-tone', item.tone);
-        return { root: element('div', { class: 'event-line' }, text, element('small', { lang: 'en' }, item.remedy)) };
+        return { root: element('div', { class: 'event-line' }, text, said_element('small', item.remedy)) };
     }, () => undefined);
     const inquiry = new Inquiry(desk, () => ({ cmd: 'bus' }), refresh_ms, (answer) => {
         if (answer.ok) known = answer['bus'] as BusAnswer;
     });
     return {
-        root: element('div', { class: 'page bus' }, element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('bus_tree', old, tree.root), panel('bus_why', calm, said_list)),
+        root: element('div', { class: 'page bus' }, element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('bus_tree', old, tree.root), panel('bus_why', calm, told_list)),
             element('div', { class: 'stack' }, element('div', { class: 'columns' }, panel('frames', frames.root), panel('clocks', clocks.root)), details.root))),
         update(state: MachineState) {
             inquiry.step();
@@ -73,7 +74,7 @@ export function bus(desk: Desk): Page {
             tree.update(slaves);
             details.update(known?.slaves[chosen]);
             const items = known ? what_is_said(known) : [];
-            said.update(items);
+            told.update(items);
             calm.hidden = !known || items.length > 0;
             write(old, inquiry.unknown ? say('not_known') : known && !known.tree_known ? say('tree_unknown') : '');
         },

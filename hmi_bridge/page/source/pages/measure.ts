@@ -9,6 +9,7 @@ import { measure_hold } from '../measure/hold';
 import { Kind, kinds, Plan } from '../measure/orders';
 import { digits, Result, ResultView } from '../measure/result';
 import { typed } from '../numbers';
+import { said } from '../sentences/said';
 import { MachineState } from '../state';
 import { Key, say } from '../texts';
 import { element, mark, write } from '../view';
@@ -43,7 +44,7 @@ export function measure(desk: Desk, [wanted = '']: readonly string[]): Page {
         void desk.link.request(request).then((answer) => {
             if (left) return;
             plan = answer.ok ? (answer['measure_plan'] as Plan) : undefined;
-            const refusal = answer.error ? [answer.error.what, answer.error.remedy].filter(Boolean).join(' – ') : '';
+            const refusal = answer.error ? [answer.error.what, answer.error.remedy].flatMap((sentence) => (sentence ? [said(sentence).text] : [])).join(' – ') : '';
             write(path, plan ? say('measure_path', { low: digits(plan.lowest), high: digits(plan.highest), unit, velocity: digits(plan.velocity), seconds: digits(plan.duration_s), margin: digits(plan.margin) }) : refusal ? `⚠ ${refusal}` : say('measure_no_path'));
             mark(path, 'data-tone', plan ? false : 'warn');
             held.order = request;

@@ -2,6 +2,7 @@
 import { in_words, key_of, stops, where } from '../alarm_words';
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
 import { fixed, microseconds } from '../numbers';
+import { said_element } from '../sentences/said';
 import { Alarm, AxisLayout, AxisState, MachineState, value } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
@@ -95,7 +96,7 @@ function standing_list() {
     const list = element('div', { class: 'standing' });
     const rows = new Rows(list, key_of, (alarm: Alarm) => {
         const tone = stops(alarm) ? 'bad' : 'warn';
-        return { root: element('a', { class: 'standing-alarm', href: '#alarms', 'data-tone': tone }, element('strong', {}, `⚠ ${where(alarm.source)}: ${in_words(alarm)}`), element('span', { lang: 'en' }, alarm.remedy)) };
+        return { root: element('a', { class: 'standing-alarm', href: '#alarms', 'data-tone': tone }, element('strong', {}, `⚠ ${where(alarm.source)}: ${in_words(alarm)}`), said_element('span', alarm.remedy)) };
     }, () => undefined);
     return {
         root: list,

@@ -5,6 +5,7 @@ import { Inquiry } from '../inquiry';
 import { Licence, page_licences } from '../licences';
 import { duration } from '../numbers';
 import { local_time } from '../save';
+import { said_element } from '../sentences/said';
 import { MachineState } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
@@ -76,7 +77,7 @@ function commands(desk: Desk) {
     const body = element('tbody'), none = element('p', { class: 'hint' }, say('nothing_commanded'));
     const rows = new Rows(body, (given: Given) => String(given.at.getTime()) + JSON.stringify(given.request), ({ at, request, answer }) => {
         const { cmd, ...rest } = request;
-        const said = element('td', answer.ok ? {} : { lang: 'en' }, answer.ok ? `✓ ${say('done')}` : `⚠ ${answer.error?.what || say('no_answer')}`);
+        const said = element('td', {}, answer.ok ? `✓ ${say('done')}` : '⚠ ', ...(answer.ok ? [] : [answer.error?.what ? said_element('span', answer.error.what) : say('no_answer')]));
         mark(said, 'data-tone', answer.ok ? 'good' : 'bad');
         return { root: element('tr', {}, element('td', { class: 'number' }, at.toLocaleTimeString('en-GB')), element('td', { lang: 'en' }, `${cmd} ${Object.values(rest).join(' ')}`), said) };
     }, () => undefined);

@@ -1,0 +1,20 @@
+// Cause and remedy of the alarms of the drive file se-808x. English: Chinese.
+export const drive_se_808x: Readonly<Record<string, string>> = {
+    'the current measurement is off at power-on': '上电时电流测量有偏差',
+    'a motor phase is open': '电机缺相',
+    'check the motor cable': '检查电机电缆',
+    'supply below the limit in 2000h:14': '电源低于 2000h:14 的限值',
+    'check the supply and its cable': '检查电源及其电缆',
+    'supply above the limit in 2000h:15, often by regeneration': '电源高于 2000h:15 的限值，多因能量回馈',
+    'decelerate more gently or fit a braking resistor': '减速放缓或加装制动电阻',
+    'stored parameters are damaged': '存储的参数已损坏',
+    'restore the parameters (1011h:01), write the machine\'s again': '恢复参数（1011h:01），再写入本机的参数',
+    'the motor lags by more than 2000h:0F': '电机滞后超过 2000h:0F',
+    'check for jams, lower acceleration or load, raise the current': '检查是否卡住，降低加速度或负载，提高电流',
+    'load above rating for too long': '负载长时间超过额定值',
+    'check the mechanics and the size of the motor': '检查机械和电机选型',
+    'no outputs, or SYNC0 lost, for longer than 2000h:19 allows': '没有输出数据或 SYNC0 丢失，超过 2000h:19 允许的时间',
+    'check cables and the cycle of the master': '检查电缆和主站周期',
+    'Hall wires open or swapped': '霍尔线断开或接反',
+    'check the encoder cable': '检查编码器电缆',
+};
