@@ -85,6 +85,11 @@ bool PageMessage::is_renewal() const {
     return press == request.end() || *press == false;
 }
 
+std::string PageMessage::variable() const {
+    const auto given = request.find("variable");
+    return given != request.end() && given->is_string() ? given->get<std::string>() : std::string{};
+}
+
 std::variant<PageMessage, UnreadMessage> read_page_message(std::string_view text) {
     const auto unread = [](Error error) { return UnreadMessage{std::nullopt, std::move(error)}; };
     if (text.size() > PageMessage::longest) return unread(web_error("too_long", "a message is at most 64 KiB", "Reload the page."));

@@ -33,6 +33,7 @@ struct PageMessage {
     /// A jog, a measurement, or a button by `set_value` with `press`: true, and false with each renewal.
     [[nodiscard]] bool is_held() const;
     [[nodiscard]] bool is_renewal() const;
+    [[nodiscard]] std::string variable() const;  ///< of a set_value; empty where it is no text
 };
 
 struct UnreadMessage {

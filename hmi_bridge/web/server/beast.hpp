@@ -27,4 +27,10 @@ inline Instant now() { return SystemClock{}.now(); }
 
 inline std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+/// Empty where it is not there or no text: what listens at a socket's path may be anything.
+inline std::string text_in(const Json& object, const char* key) {
+    const auto found = object.is_object() ? object.find(key) : object.end();
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
 }  // namespace taktwerk::hmi::web

@@ -48,7 +48,8 @@ public:
                 self->note_error(answer);
                 return self->line_->close("no hello");
             }
-            self->name_ = hello.value("machine", self->path_);
+            self->name_ = text_in(hello, "machine");
+            if (self->name_.empty()) self->name_ = self->path_;
             self->line_->ask(Json{{"cmd", "layout"}}, answer_patience, [self](const MachineAnswer& layout) {
                 if (const auto text = layout.value_of("layout"); !text.empty()) self->layout_ = text;
                 self->change();
@@ -74,7 +75,7 @@ private:
     }
     void note_error(const MachineAnswer& answer) {
         const auto json = Json::parse("{" + answer.keys + "}", nullptr, false);
-        if (json.is_object() && json.contains("error") && json["error"].is_object()) why_ = json["error"].value("what", std::string{});
+        if (json.is_object() && json.contains("error")) why_ = text_in(json["error"], "what");
     }
     void ask_values() {
         asking_ = true;

@@ -161,6 +161,7 @@ private:
         send(http::status::ok, json_type, R"({"ok":true})", false, false);
     }
     void note_login(const std::string& name, bool ok, const char* why) {
+        if (!ok && !site_->refused.take("login", now())) return;
         Json line{{"utime", wall_utime()}, {"user", name}, {"from", visitor_.from}, {"event", "login"}, {"ok", ok}};
         if (!ok) line["why"] = why;
         site_->audit(std::move(line));

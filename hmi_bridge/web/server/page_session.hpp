@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -57,7 +58,8 @@ public:
 private:
     static constexpr Duration stale_after = 500ms;
     static constexpr Duration stranger_patience = 60s;  ///< a page in front of which nobody logs in comes again if it likes
-    static constexpr std::size_t most_waiting = 32;     ///< commands of one page without an answer
+    static constexpr std::size_t most_pressed = 16;
+    static constexpr std::size_t most_waiting = 32;  ///< commands of one page without an answer
 
     void on_open() override {
         stranger_since_ = now();
@@ -78,6 +80,8 @@ private:
         if (!session_) return;
         if (!session_->ended) {
             session_->used = at;
+            const auto before = std::exchange(role_before_, session_->role);
+            if (static_cast<int>(session_->role) < static_cast<int>(before)) let_go_all("another role");
             return;
         }
         session_.reset();
@@ -86,6 +90,13 @@ private:
         hello();
     }
 
+    /// Jogs, buttons, points, outputs, control: the machine ends with the connection what came over it.
+    void let_go_all(const char* why) {
+        if (line_) line_->close(why);
+        line_.reset();
+        jogged_ = Json{};
+        pressed_.clear();
+    }
     void watch_first() {
         if (is_stranger()) return;
         const auto first = site_->feeds.first();
@@ -93,9 +104,7 @@ private:
     }
     void watch(std::shared_ptr<Feed> feed) {
         if (feed == feed_) return;
-        if (line_) line_->close("another machine is watched");
-        line_.reset();
-        jogged_ = Json{};
+        let_go_all("another machine is watched");
         feed_ = std::move(feed);
         watched_since_ = now();
         drop_state();
@@ -125,7 +134,7 @@ private:
             return hello();
         }
         if (const auto refused = judge(message, named)) {
-            audit(message, failed_answer(*refused));
+            audit(message, failed_answer(*refused), false);
             return put(refusal(message.id, *refused));
         }
         forward(std::move(message), named);
@@ -170,20 +179,33 @@ private:
         message.request["utime"] = wall_utime() - waited_ / 1us;
         const auto command = message.rule->command;
         const auto patience = command.starts_with("drive_") ? drive_patience : answer_patience;
-        const bool renewal = message.is_renewal();
+        const bool renewal = is_renewal(message);
         if (message.is_jog() && message.request.contains("axis")) jogged_ = message.may_move() ? message.request["axis"] : Json{};
         const bool is_long = answers_long(command);
         if (is_long) ++asked_long_;
         auto request = message.request;
         auto answered = [self = self_as_page(), message = std::move(message), renewal, is_long](const MachineAnswer& answer) {
             if (is_long) --self->asked_long_;
-            if (!renewal || !answer.ok) self->audit(message, answer);
+            if (answer.ok) self->note_press(message);
+            if (!renewal || !answer.ok) self->audit(message, answer, true);
             self->put_answer(fmt::format(R"({{"type":"answer","id":{},{}}})", message.id, answer.keys));
         };
         if (is_long) return named->long_line().ask(std::move(request), patience, std::move(answered));
         // A stop takes the way that stands already: it waits for no place at the machine.
         const bool by_server = command == "stop" && (named != feed_ || !line_ || line_->closed());
         (by_server ? named->line() : own_line()).ask(std::move(request), patience, std::move(answered));
+    }
+    /// Of a jog or a measurement the machine knows whether it is one. A value that says so is one of a button that this page holds, or it is written.
+    [[nodiscard]] bool is_renewal(const PageMessage& message) const {
+        return message.is_renewal() &&
+               (message.is_jog() || std::find(pressed_.begin(), pressed_.end(), message.variable()) != pressed_.end());
+    }
+    void note_press(const PageMessage& message) {
+        if (message.rule->command != "set_value" || message.is_renewal()) return;
+        std::erase(pressed_, message.variable());
+        if (!message.is_held() || !message.may_move()) return;
+        if (pressed_.size() >= most_pressed) pressed_.erase(pressed_.begin());
+        pressed_.push_back(message.variable());
     }
     std::shared_ptr<PageSession> self_as_page() { return std::static_pointer_cast<PageSession>(shared_from_this()); }
     /// A page that only looks takes no place at the machine.
@@ -201,21 +223,23 @@ private:
         jogged_ = Json{};
     }
 
-    /// Who only looks is not written down, unless it was refused.
-    void audit(const PageMessage& message, const MachineAnswer& answer) {
-        if (answer.ok && !message.rule->moves && message.rule->command != "stop") return;
+    /// Who only looks is not written down, unless it was refused; and what nobody carried out is not written down without end.
+    void audit(const PageMessage& message, const MachineAnswer& answer, bool handed_on) {
+        const bool looks = !message.rule->moves && message.rule->command != "stop";
+        if (answer.ok && looks) return;
+        if (!answer.ok && (looks || !handed_on) && !site_->refused.take(is_stranger() ? "stranger" : "user " + user(), now())) return;
         Json line{{"utime", wall_utime()},
                   {"user", user()},
                   {"role", role_word()},
                   {"from", visitor_.from},
                   {"machine", feed_ ? feed_->name() : ""}};
-        line["request"] = message.request;
+        line["request"] = bounded(message.request);
         line["ok"] = answer.ok;
         if (!answer.ok) {
             const auto json = Json::parse("{" + answer.keys + "}", nullptr, false);
-            if (json.is_object() && json.contains("error")) line["error"] = json["error"];
+            if (json.is_object() && json.contains("error")) line["error"] = bounded(json["error"]);
         }
-        site_->audit(std::move(line));
+        site_->audit(line);
     }
 
     std::shared_ptr<Site> site_;
@@ -225,11 +249,13 @@ private:
     std::shared_ptr<MachineLine> line_;
     std::size_t asked_long_ = 0;
     MessageAge age_;
-    Duration waited_{};  ///< of the message that is being judged
-    Json jogged_;        ///< the axis that this page holds; null: none
+    Duration waited_{};                 ///< of the message that is being judged
+    std::vector<std::string> pressed_;  ///< buttons that the machine has taken as pressed by this page
+    Json jogged_;                       ///< the axis that this page holds; null: none
     Instant stale_told_{}, watched_since_{}, stranger_since_{};
     std::uint64_t told_ = 0, told_site_ = 0;
     std::optional<Role> told_role_;
+    Role role_before_ = Role::viewer;  ///< of the session when it was last looked at
 };
 
 }  // namespace taktwerk::hmi::web

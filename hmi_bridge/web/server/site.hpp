@@ -8,7 +8,9 @@
 #include <set>
 #include <string>
 
+#include "hmi_bridge/wall_clock.hpp"
 #include "hmi_bridge/web/account/accounts.hpp"
+#include "hmi_bridge/web/audit_line.hpp"
 #include "hmi_bridge/web/page_origin.hpp"
 #include "hmi_bridge/web/server/feeds.hpp"
 #include "hmi_bridge/web/server/web_server.hpp"
@@ -38,8 +40,15 @@ struct Site {
     std::set<std::shared_ptr<PageSession>> pages{};
     std::list<std::weak_ptr<HttpConnection>> connections{};  ///< HTTP, the one heard of last at the end
 
-    void audit(Json line) const {
-        if (options.audit) options.audit(text_of(line));
+    RefusalBudget refused{};  ///< by user; strangers are one, and so are logins that failed
+
+    void audit(const Json& line) const {
+        if (options.audit) options.audit(audit_text(line));
+    }
+    /// The counts of what was refused too often to stand there one by one; `all`: at the end.
+    void tell_unwritten(Instant at, bool all = false) {
+        while (const auto more = refused.next_unwritten(at, all))
+            audit(Json{{"utime", wall_utime()}, {"event", "refused"}, {"who", more->who}, {"times", more->times}});
     }
 };
 

@@ -23,6 +23,7 @@ struct WebServer::Impl {
         if (!site) return;
         for (const auto& page : site->pages) page->end();
         feeds.close();
+        site->tell_unwritten(now(), true);
     }
 
     void accept() {
@@ -72,6 +73,7 @@ struct WebServer::Impl {
             page = (*page)->ended() ? site->pages.erase(page) : std::next(page);
         }
         feeds.step(at, watched);
+        site->tell_unwritten(at);
     }
     void hand_out(Feed& feed) {
         for (const auto& page : site->pages)

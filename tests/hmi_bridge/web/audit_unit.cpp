@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "hmi_bridge/web/audit_line.hpp"
 #include "hmi_bridge/web/audit_log.hpp"
 
 namespace taktwerk::hmi::web {
@@ -89,6 +90,65 @@ TEST_F(Audit, ALineThatWasTornDoesNotSwallowTheNext) {
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
     ASSERT_TRUE(file->append("whole"));
     EXPECT_THAT(lines(path()), ElementsAre(line, line, line.substr(0, 18), "whole"));
+}
+
+// What a stranger calls himself is shown by terminals: nothing of it may be more than text.
+TEST(AuditLine, MovesNoCursorAndTurnsNoText) {
+    using namespace std::string_literals;
+    const std::pair<std::string, std::string> cases[]{
+        {"anna", "anna"},
+        {"\xE5\xBC\xA0\xC3\xA4\xF0\x9F\x98\x80", "\xE5\xBC\xA0\xC3\xA4\xF0\x9F\x98\x80"},
+        {"a\nb", R"(a\nb)"},
+        {"\x1b[2J", R"(\u001b[2J)"},
+        {"\xC2\x9B"
+         "2J",
+         R"(\u009b2J)"},
+        {"\x7f", R"(\u007f)"},
+        {"a\xE2\x80\xA8"
+         "b",
+         R"(a\u2028b)"},
+        {"\xE2\x80\xAE"
+         "evil",
+         R"(\u202eevil)"},
+        {"\xE2\x81\xA6", R"(\u2066)"},
+        {"\xEF\xBB\xBF", R"(\ufeff)"},
+        {"\0"s, R"(\u0000)"},
+    };
+    for (const auto& [name, shown] : cases) {
+        const auto text = audit_text({{"user", name}});
+        EXPECT_EQ(text, R"({"user":")" + shown + "\"}");
+        EXPECT_EQ(nlohmann::ordered_json::parse(text)["user"], name) << "nothing is lost";
+    }
+    EXPECT_NO_THROW((void)audit_text({{"user", "\xff"}}));
+}
+
+TEST(AuditLine, OfALongRequestTheBeginningStands) {
+    const nlohmann::ordered_json small{{"cmd", "home"}, {"axis", "x"}}, large{{"cmd", "home"}, {"axis", std::string(60'000, 'A')}};
+    EXPECT_EQ(bounded(small), small);
+    EXPECT_LT(bounded(large).dump().size(), longest_in_audit);
+    EXPECT_THAT(bounded(large)["begins"].get<std::string>(), HasSubstr(R"({"cmd":"home")"));
+    EXPECT_EQ(bounded(large)["bytes"], large.dump().size());
+}
+
+// Forty at once, then one each two seconds (audit_line.hpp); everything else is counted for whom it was.
+TEST(AuditLine, RefusalsAreBoundedForEachAndCounted) {
+    using namespace std::chrono_literals;
+    RefusalBudget budget;
+    std::size_t written = 0;
+    for (int i = 0; i < 1000; ++i) written += budget.take("user olga", Instant{1s}) ? 1 : 0;
+    EXPECT_EQ(written, 40u);
+    EXPECT_TRUE(budget.take("user emil", Instant{1s})) << "somebody else's are his own";
+    EXPECT_FALSE(budget.next_unwritten(Instant{10s})) << "not yet due";
+    const auto more = budget.next_unwritten(Instant{11s});
+    ASSERT_TRUE(more);
+    EXPECT_EQ(more->who, "user olga");
+    EXPECT_EQ(more->times, 960u);
+    EXPECT_FALSE(budget.next_unwritten(Instant{11s}));
+    written = 0;
+    for (int second = 11; second < 71; ++second) written += budget.take("user olga", Instant{std::chrono::seconds(second)}) ? 1 : 0;
+    EXPECT_GE(written, 30u);
+    EXPECT_LE(written, 36u);
+    EXPECT_EQ(budget.next_unwritten(Instant{71s}, true)->times, 60u - written);
 }
 
 }  // namespace

@@ -134,6 +134,43 @@ TEST_F(ServerLimits, StrangersKeepNoUserOut) {
     EXPECT_EQ(page.next("hello")["user"], "olga");
 }
 
+// Nobody pushes what others did out of the audit: what is refused is bounded in length and number, and counted.
+TEST_F(ServerLimits, RefusalsDoNotFillTheAudit) {
+    ServerOptions options;
+    options.users = users_file();
+    serve(options);
+    PageClient stranger, viewer, engineer;
+    ASSERT_TRUE(stranger.open(port));
+    ASSERT_TRUE(viewer.open(port, cookie_of("olga")));
+    ASSERT_TRUE(engineer.open(port, cookie_of("emil")));
+    ASSERT_TRUE(shows_machine(viewer));
+    ASSERT_TRUE(shows_machine(engineer));
+    for (auto* page : {&stranger, &viewer})
+        for (int i = 0; i < 100; ++i)
+            EXPECT_EQ(page->ask({{"cmd", "set_output"}, {"output", std::string(20'000, 'A')}, {"value", 1}})["ok"], false);
+    for (int i = 0; i < 60; ++i) (void)log_in("nobody" + std::to_string(i), "12345678");
+    for (int i = 0; i < 60; ++i)
+        EXPECT_EQ(engineer.ask({{"cmd", "home"}, {"axis", "x"}})["ok"], false) << "by the machine: somebody's deed";
+    end();
+    std::map<std::string, std::size_t> written, counted;
+    std::size_t longest = 0;
+    for (const auto& line : audit()) {
+        longest = std::max(longest, line.dump().size());
+        if (line.contains("times")) counted[line["who"]] += line["times"].get<std::size_t>();
+        else if (line.value("event", "") == "login") ++written[line["ok"] == true ? "in" : "login"];
+        else ++written[line["user"] == "" ? "stranger" : "user " + line["user"].get<std::string>()];
+    }
+    EXPECT_LT(longest, 2000u);
+    EXPECT_EQ(written["user emil"], 60u);
+    for (const char* who : {"stranger", "user olga"}) {
+        EXPECT_GE(written[who], 40u) << who;
+        EXPECT_LT(written[who], 70u) << who << ": forty, and one each two seconds";
+        EXPECT_EQ(written[who] + counted[who], 100u) << who;
+    }
+    EXPECT_GE(written["login"], 40u);
+    EXPECT_EQ(written["login"] + counted["login"], 60u);
+}
+
 TEST_F(ServerLimits, HostileMessagesAreAnsweredAndOversizeOnesEndThePage) {
     serve();
     PageClient page;

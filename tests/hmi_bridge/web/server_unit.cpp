@@ -185,6 +185,34 @@ TEST_F(ServedSite, WhoIsThrownOutLetsGoWhatHeHeld) {
     EXPECT_EQ(machine.connections(), 1u) << "the machine ends what a closed connection jogged";
 }
 
+// What an engineer has forced or set goes with his rights: as a viewer he could not even take it back.
+TEST_F(ServedSite, WhoMayLessThanBeforeLetsGoWhatHeHeld) {
+    ServerOptions options;
+    options.users = users_file();
+    serve(options);
+    PageClient page;
+    ASSERT_TRUE(page.open(port, cookie_of("emil")));
+    ASSERT_TRUE(shows_machine(page));
+    EXPECT_EQ(page.ask({{"cmd", "force"}, {"input", "a"}, {"value", 1}})["ok"], true);
+    ASSERT_EQ(machine.connections(), 2u);
+    auto users = *Users::load(options.users);
+    const auto becomes = [&](Role role) {
+        auto emil = *users.find("emil");
+        emil.role = role;
+        ASSERT_TRUE(users.put(emil));
+        ASSERT_TRUE(users.save(options.users));
+        EXPECT_FALSE(
+            page.next([&](const PageJson& one) { return one.value("type", "") == "hello" && one["role"] == word(role); }, 2s).is_null());
+    };
+    becomes(Role::admin);
+    EXPECT_EQ(page.ask({{"cmd", "force"}, {"input", "b"}, {"value", 1}})["ok"], true);
+    EXPECT_EQ(machine.asked("force").at(0).connection, machine.asked("force").at(1).connection) << "who may more keeps what he holds";
+    becomes(Role::operates);
+    for (int tries = 0; tries < 200 && machine.connections() > 1; ++tries) ::usleep(10'000);
+    EXPECT_EQ(machine.connections(), 1u);
+    EXPECT_EQ(page.ask({{"cmd", "mode"}, {"mode", "manual"}})["ok"], true) << "and he goes on with what he may";
+}
+
 // The numbers are login_gate.hpp's: ten at once; the real user, who has logged in from here before, gets in all the same.
 TEST_F(ServedSite, GuessingIsRefusedAfterTenTries) {
     ServerOptions options;
@@ -269,6 +297,44 @@ TEST_F(ServedSite, EachCommandIsWrittenDownWithWhoFromWhereWhatAndTheAnswer) {
     EXPECT_EQ(lines[2]["error"]["code"], "command.wrong_mode");
     EXPECT_EQ(lines[3]["error"]["code"], "web.role");
     EXPECT_EQ(machine.asked("shutdown").size(), 0u);
+}
+
+// A renewal is not written down, so it has to be one: of a button that the machine has taken as pressed by this page.
+TEST_F(ServedSite, AValueThatCallsItselfARenewalIsWrittenDown) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    const auto set = [&](const char* variable, double value, std::optional<bool> press) {
+        PageJson message{{"cmd", "set_value"}, {"variable", variable}, {"value", value}};
+        if (press) message["press"] = *press;
+        EXPECT_EQ(page.ask(message)["ok"], true);
+        return audit().size();
+    };
+    EXPECT_EQ(set("pace", 5, false), 1u);
+    EXPECT_EQ(set("start", 1, true), 2u);
+    EXPECT_EQ(set("start", 1, false), 2u) << "this is one";
+    EXPECT_EQ(set("pace", 6, false), 3u) << "of another variable";
+    EXPECT_EQ(set("start", 0, std::nullopt), 4u);
+    EXPECT_EQ(set("start", 1, false), 5u) << "it has been let go";
+}
+
+TEST_F(ServedSite, WhatListensAtASocketMayAnswerAnything) {
+    for (const char* odd : {R"(,"ok":true,"hello":{"machine":5})", R"(,"ok":true,"hello":{"machine":null})",
+                            R"(,"ok":false,"error":{"what":5})", R"(,"ok":false,"error":7)"}) {
+        machine.stop();
+        machine.odd_hello = odd;
+        machine.start();
+        serve();
+        PageClient page;
+        ASSERT_TRUE(page.open(port)) << odd;
+        EXPECT_FALSE(page.next("hello").is_null()) << odd;
+        machine.stop();
+        machine.odd_hello.clear();
+        machine.start();
+        EXPECT_FALSE(page.next([](const PageJson& one) { return one.value("machine", "") == "demo"; }, 5s).is_null()) << odd;
+        end();
+    }
 }
 
 }  // namespace

@@ -69,6 +69,8 @@ public:
     std::atomic<bool> silent{false};             ///< nothing is answered
     std::atomic<std::size_t> long_answer{1024};  ///< bytes of the answer to scope_read
 
+    std::string odd_hello;  ///< the answer to hello behind its id, of something that is no machine; set while it is stopped
+
 private:
     void on_open(ConnectionId, const Peer&) override {
         const std::lock_guard lock(mutex_);
@@ -91,6 +93,7 @@ private:
         const auto answer = [&](const std::string& more) {
             server_->send(connection, R"({"id":)" + std::to_string(request.value("id", 0)) + more + "}");
         };
+        if (cmd == "hello" && !odd_hello.empty()) return answer(odd_hello);
         if (cmd == "hello") return answer(R"(,"ok":true,"hello":{"machine":")" + name_ + "\"}");
         if (cmd == "layout") return answer(R"(,"ok":true,"layout":{"machine":")" + name_ + R"(","axes":[{"name":"x"}]})");
         if (cmd == "state") {
