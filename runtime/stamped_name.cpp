@@ -5,6 +5,7 @@
 #include <ctime>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -49,13 +50,16 @@ bool is_stamped(std::string_view file_name, std::string_view machine, std::strin
     return file_name.starts_with(mine) && file_name.ends_with(ending) && has_utc_shape(file_name.substr(mine.size(), utc_shape.size()));
 }
 
-void keep_newest(const std::string& folder, std::string_view machine, std::string_view ending, std::size_t most) {
+void keep_newest(const std::string& folder, std::string_view machine, std::string_view ending, std::size_t most,
+                 const std::string& newest) {
     std::vector<std::string> names;
     std::error_code ignored;
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-        if (is_stamped(entry.path().filename().string(), machine, ending)) names.push_back(entry.path().string());
+        if (auto name = entry.path().filename().string(); is_stamped(name, machine, ending)) names.push_back(std::move(name));
     std::sort(names.begin(), names.end());
-    for (std::size_t i = 0; i + most < names.size(); ++i) std::filesystem::remove(names[i], ignored);
+    const auto later = std::upper_bound(names.begin(), names.end(), std::filesystem::path(newest).filename().string());
+    std::rotate(names.begin(), later, names.end());
+    for (std::size_t i = 0; i + most < names.size(); ++i) std::filesystem::remove(std::filesystem::path(folder) / names[i], ignored);
 }
 
 }  // namespace taktwerk::runtime

@@ -16,8 +16,9 @@ namespace taktwerk::runtime {
 [[nodiscard]] bool is_stamped(std::string_view file_name, std::string_view machine, std::string_view ending);
 /// "20261123T143015.123"
 [[nodiscard]] std::string utc_stamp(Duration since_1970);
-/// Deletes the oldest of this machine's files with this ending, so that `most` are left. Nobody else's are touched; what cannot be
-/// deleted stays.
-void keep_newest(const std::string& folder, std::string_view machine, std::string_view ending, std::size_t most);
+/// Deletes the oldest of this machine's files with this ending, so that `most` are left. `newest`: the one just written (a path or a name); what
+/// bears a later stamp was written while the clock went wrong, by it or before it was set, and counts as oldest of all. Nobody else's are touched;
+/// what cannot be deleted stays.
+void keep_newest(const std::string& folder, std::string_view machine, std::string_view ending, std::size_t most, const std::string& newest);
 
 }  // namespace taktwerk::runtime

@@ -112,15 +112,16 @@ std::string ScopeTrigger::state_json(ConnectionId connection) const {
 
 void ScopeTrigger::step(const runtime::Snapshot* snapshot) {
     if (hunts_.empty() || machine_.signals() == nullptr) return;
-    for (auto& [connection, armed] : hunts_) armed.hunt.step(rows_per_step);
-    if (snapshot == nullptr) return;
-    alarms_.look(*snapshot, [&](const AlarmFact& fact, Reaction reaction, Instant since) {
-        const auto cycle = runtime::cycle_at(*machine_.signals(), since);
-        for (auto& [connection, armed] : hunts_)
-            if (armed.alarm.empty() ? reaction >= Reaction::stop_axis : machine_.describe(fact).name == armed.alarm)
-                armed.hunt.offer(cycle);
-        return reaction >= Reaction::stop_axis;
-    });
+    if (snapshot != nullptr)
+        alarms_.look(*snapshot, [&](const AlarmFact& fact, Reaction reaction, Instant since) {
+            const auto cycle = runtime::cycle_at(*machine_.signals(), since);
+            for (auto& [connection, armed] : hunts_)
+                if (armed.alarm.empty() ? reaction >= Reaction::stop_axis : machine_.describe(fact).name == armed.alarm)
+                    armed.hunt.offer(cycle);
+            return true;  // once: its cycle leaves the memory, and whoever is armed later does not wait for what was there before
+        });
+    const auto told_to = snapshot != nullptr ? snapshot->cycle : 0;
+    for (auto& [connection, armed] : hunts_) armed.hunt.step(rows_per_step, told_to);
 }
 
 }  // namespace taktwerk::hmi

@@ -139,7 +139,7 @@ Result<Evidence::File> Evidence::write(const Recorder& moments, const std::vecto
         return Error{"evidence.write", path, fmt::format("the file cannot get its name: {}", failed.message()),
                      "look into the folder: the frames may stand beside it in " + part};
     file.path = path;
-    if (config_.files > 0) keep_newest(config_.directory, machine_.layout().machine, ending, config_.files);
+    if (config_.files > 0) keep_newest(config_.directory, machine_.layout().machine, ending, config_.files, path);
     return file;
 }
 

@@ -210,7 +210,7 @@ Result<FlightRecorder::File> FlightRecorder::write_next(bool all) {
     auto written = write(next);
     std::set<std::string> there;
     std::error_code ignored;
-    if (written) keep_newest(folder_, machine_.layout().machine, scope_ending, config_.files);
+    if (written) keep_newest(folder_, machine_.layout().machine, scope_ending, config_.files, written->path);
     for (const auto& entry : fs::directory_iterator(folder_, ignored)) there.insert(entry.path().filename().string());
     const std::scoped_lock lock{mutex_};
     waiting_.pop_front();

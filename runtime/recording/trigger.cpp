@@ -61,7 +61,8 @@ void TriggerHunt::happened(std::uint64_t cycle, bool automatic) {
     events_.push_back({cycle, std::min(from, cycle), cycle + std::max<std::uint64_t>(request_.post, 1), automatic});
     if (events_.size() > most_events) events_.pop_front();
     quiet_since_ = cycle + request_.post;
-    not_before_ = cycle + std::max({request_.post, request_.holdoff, std::uint64_t{1}});
+    // A window that shows nothing keeps no event away: neither in itself nor by a hold-off.
+    if (!automatic) not_before_ = cycle + std::max({request_.post, request_.holdoff, std::uint64_t{1}});
     if (request_.mode == Mode::single) armed_ = false;
 }
 
@@ -69,10 +70,12 @@ void TriggerHunt::offer(std::uint64_t cycle) {
     if (armed_ && request_.condition.kind == TriggerCondition::Kind::alarm && cycle >= not_before_) happened(cycle, false);
 }
 
-void TriggerHunt::step(std::size_t most_rows) {
+void TriggerHunt::step(std::size_t most_rows, std::uint64_t told_to) {
     const std::array<std::uint16_t, 1> word{request_.cell.word};
+    const bool looks = request_.condition.kind != TriggerCondition::Kind::alarm;
     for (std::uint64_t left = most_rows; armed_ && left > 0;) {
-        const auto there = rows_.span();
+        auto there = rows_.span();
+        if (!looks) there.last = std::min(there.last, told_to);
         if (there.empty() || next_ > there.last) return;
         if (next_ < there.first) {
             skipped_ += there.first - next_;
@@ -80,7 +83,6 @@ void TriggerHunt::step(std::size_t most_rows) {
         }
         const auto count = std::min({there.last + 1 - next_, rows_at_once, left});
         left -= count;
-        const bool looks = request_.condition.kind != TriggerCondition::Kind::alarm;
         auto right = next_;
         if (looks) {
             buffer_.resize(count);

@@ -44,9 +44,9 @@ private:
 class TriggerHunt {
 public:
     enum class Mode : std::uint8_t {
-        single,    ///< once
-        normal,    ///< again and again
-        automatic  ///< again and again; where nothing happens for a window (a tenth of a second at least), a window all the same
+        single,  ///< once
+        normal,  ///< again and again
+        automatic  ///< again and again; where nothing happens for a window (a tenth of a second at least), a window all the same, which keeps no event away
     };
     struct Request {
         TriggerCondition condition;
@@ -65,8 +65,8 @@ public:
     /// Begins with the newest row of `rows`, which outlives this.
     TriggerHunt(const SignalRows& rows, Request request);
 
-    /// Looks at no more than about `most_rows` further ones.
-    void step(std::size_t most_rows);
+    /// Looks at no more than about `most_rows` further ones. `told_to`: alarms up to this cycle have been offered; what waits for one goes no further.
+    void step(std::size_t most_rows, std::uint64_t told_to = ~std::uint64_t{0});
     /// An alarm was raised in this cycle: what a condition of kind `alarm` waits for.
     void offer(std::uint64_t cycle);
 

@@ -244,6 +244,28 @@ TEST_F(ScopeRequestsTest, BrokenRequestsGetOneClearErrorEach) {
     EXPECT_EQ(ask({{"cmd", "scope_read"}, {"signals", {"x.state"}}, {"points", 0}})["ok"], true);
 }
 
+// A warning that stands for longer than the memory is deep: it came before the trigger was armed, and does not come again.
+TEST_F(ScopeRequestsTest, AnAlarmFromBeforeNeverTriggersHoweverLongItStands) {
+    machine.snapshot.alarms = {{{0x5001, AlarmSource::axis, 0}, Instant{2900ms}, 1, true, false, Reaction::warn},
+                               {{0x5001, AlarmSource::axis, 1}, Instant{7500ms}, 1, true, false, Reaction::warn}};
+    machine.snapshot.alarm_count = 1;
+    machine.snapshot.cycle = 3000;
+    const json when{{"kind", "alarm"}, {"alarm", "following_error"}};
+    ASSERT_EQ(ask({{"cmd", "scope_arm"}, {"when", when}, {"pre", 5}, {"post", 5}, {"mode", "normal"}})["ok"], true);
+    for (std::uint64_t cycle = 3001; cycle <= 8000; ++cycle) {
+        write(cycle, 0);
+        machine.snapshot.cycle = cycle;
+        if (cycle % 100 == 0) scope.step(&machine.snapshot, now);
+    }
+    EXPECT_EQ(ask({{"cmd", "scope_state"}})["scope"]["events"], json::array());
+
+    machine.snapshot.alarm_count = 2;  // one that did come
+    scope.step(&machine.snapshot, now);
+    const auto events = ask({{"cmd", "scope_state"}})["scope"]["events"];
+    ASSERT_EQ(events.size(), 1u);
+    EXPECT_EQ(events[0]["cycle"], 7500);
+}
+
 TEST(ScopeRequests, AMachineWithoutAMemorySaysSo) {
     const test::FakeMachine machine;
     ScopeRequests scope{machine};

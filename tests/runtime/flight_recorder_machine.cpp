@@ -233,6 +233,29 @@ TEST_F(Flight, OnlyTheNewestAreKeptAndOtherFilesAreLeftAlone) {
     }
 }
 
+// A computer whose clock has lost its battery: what it keeps now is newer than what bears a later date.
+TEST_F(Flight, AClockThatWasSetBackLosesNoNewRecording) {
+    auto config = short_one();
+    config.recording.files = 2;
+    fs::create_directories(folder / "recordings");
+    for (const auto* kept :
+         {"test-20260101T000000.000-a.twscope", "test-20260101T000000.001-b.twscope", "test-19700201T000000.000-c.twscope"})
+        std::ofstream(folder / "recordings" / kept) << "of another time";
+    start(std::move(config));
+    fault("x");
+    run(1s);
+    ASSERT_THAT(files, SizeIs(1));
+    EXPECT_THAT(names(), ::testing::ElementsAre("test-19700201T000000.000-c.twscope", fs::path(files[0].path).filename().string()))
+        << "those of the future are the oldest";
+    EXPECT_THAT(recorder->kept(), SizeIs(1));
+    clear(0);
+    fault("x");
+    run(1s);
+    ASSERT_THAT(files, SizeIs(2));
+    EXPECT_TRUE(fs::exists(files[0].path) && fs::exists(files[1].path));
+    EXPECT_THAT(names(), SizeIs(2));
+}
+
 TEST_F(Flight, ALoadedOneIsTheFileAndANameIsNoPath) {
     start();
     run(1500ms);

@@ -156,6 +156,25 @@ TEST_F(Hunt, AutomaticShowsSomethingWhereNothingHappens) {
     EXPECT_TRUE(one.events()[1].automatic);
 }
 
+// "Where nothing happens": a window that was shown meanwhile hides nothing, in itself or by its hold-off.
+TEST_F(Hunt, AnAutomaticWindowKeepsNoEventAway) {
+    quiet(10);
+    auto one = hunt({Kind::rising, 5}, 100, 100, Mode::automatic), held = hunt({Kind::rising, 5}, 100, 100, Mode::automatic, 5000);
+    quiet(250);  // at 210 something is shown all the same, until 310
+    write(10);
+    quiet(99);
+    one.step(10000);
+    held.step(10000);
+
+    for (const auto& hunted : {one, held}) {
+        ASSERT_EQ(hunted.events().size(), 2u);
+        EXPECT_EQ(hunted.events()[0].cycle, 210u);
+        EXPECT_TRUE(hunted.events()[0].automatic);
+        EXPECT_EQ(hunted.events()[1].cycle, 261u);
+        EXPECT_FALSE(hunted.events()[1].automatic);
+    }
+}
+
 TEST_F(Hunt, WhoIsOvertakenSaysHowMuchItDidNotSee) {
     quiet(10);
     auto one = hunt({Kind::rising, 5}, 0, 0);
@@ -184,6 +203,20 @@ TEST_F(Hunt, AnAlarmIsOfferedAndOneFromBeforeDoesNotCount) {
     one.step(1000);
     EXPECT_THAT(cycles(one), ElementsAre(60));
     EXPECT_FALSE(one.armed());
+}
+
+// Alarms are told a little later than the rows are there: where nothing is known yet, nothing is shown instead.
+TEST_F(Hunt, AutomaticWaitsForTheAlarmsOfACycle) {
+    quiet(50);
+    auto one = hunt({Kind::alarm}, 50, 50, Mode::automatic);
+    quiet(200);
+    one.step(1000, 149);
+    EXPECT_EQ(one.looked_to(), 150u);
+    one.offer(150);
+    one.step(1000, 250);
+    ASSERT_EQ(one.events().size(), 1u) << "150 + 50 + 100 is still to come";
+    EXPECT_EQ(one.events()[0].cycle, 150u);
+    EXPECT_FALSE(one.events()[0].automatic);
 }
 
 }  // namespace

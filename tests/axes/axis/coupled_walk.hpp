@@ -10,12 +10,16 @@ namespace taktwerk::axes::test {
 
 /// Whether the axes of a walk have other limits in one direction than in the other.
 enum class Directions : std::uint8_t { alike, differ };
+/// Whether somebody turns the operator's override meanwhile: of its own, what the others draw stays what it was.
+enum class Operators : std::uint8_t { away, at_the_override };
 
 class CoupledWalk {
 public:
-    CoupledWalk(unsigned seed, WalkCounts& counts, Directions directions = Directions::alike)
+    CoupledWalk(unsigned seed, WalkCounts& counts, Directions directions = Directions::alike, Operators operators = Operators::away)
         : counts_(counts),
           dice_(seed),
+          operators_dice_(seed + 1'000'000),
+          operators_(operators),
           rig_(any_axes(dice_, directions)),
           ledger_(rig_.axes.size()),
           any_(
@@ -119,11 +123,29 @@ private:
         for (std::size_t i = 0; i < rig_.axes.size(); ++i) stir(i);
         if (gap_ > 0 && --gap_ == 0) rig_.drives[gap_axis_]->silent = false;
         if (!lively_) return;
+        if (operators_ == Operators::at_the_override) turn_override();
         if (!dice_.once_in(12)) return;
         const auto axis = dice_.below(static_cast<unsigned>(rig_.axes.size()));
         // Several in one scan: what a program of many blocks does.
         do act(axis);
         while (dice_.once_in(3));
+    }
+    /// Of one axis or of all: to nothing, to all, anywhere, or a little further, as a knob is turned.
+    void turn_override() {
+        if (knob_ > 0) --knob_;
+        else if (!operators_dice_.once_in(40)) return;
+        else if (operators_dice_.once_in(3)) knob_ = operators_dice_.below(60);
+        const auto axes = static_cast<unsigned>(rig_.axes.size());
+        const auto only = operators_dice_.below(axes + 1);  // the last: all
+        double factor = operators_dice_.one_of({0.0, 1.0, 1e-9, operators_dice_.between(0, 1), operators_dice_.between(0, 0.05)});
+        for (std::size_t i = 0; i < axes; ++i) {
+            if (only < axes && only != i) continue;
+            if (knob_ > 0) factor = std::clamp(rig_.view(i).operators_override + operators_dice_.between(-0.05, 0.05), 0.0, 1.0);
+            if (rig_.axes[i].set_operators_override(factor) != ErrorId::none) wrong_ += "the operator's override was refused\n";
+            note(i, fmt::format("the operator's override is {}", factor));
+            count("operator's override");
+            if (rig_.view(i).state == AxisState::SynchronizedMotion) count("operator's override of a coupling");
+        }
     }
     void act(std::size_t axis) {
         const auto& view = rig_.view(axis);
@@ -340,6 +362,7 @@ private:
             it.set_mode(OperatingMode::automatic);
             it.take_control(Owner::program);
             (void)it.set(Override{}, Owner::program);
+            if (operators_ == Operators::at_the_override) (void)it.set_operators_override(1);
             if (rig_.view(i).lock != 0) it.release_stop(rig_.view(i).lock, Owner::program);
             locks_[i] = jogs_[i] = 0;
         }
@@ -410,7 +433,9 @@ private:
     }
 
     WalkCounts& counts_;
-    Dice dice_;
+    Dice dice_, operators_dice_;
+    Operators operators_;
+    unsigned knob_ = 0;  // so many further turns of it
     CouplingRig rig_;
     WalkTables tables_;
     WalkLedger ledger_;

@@ -83,5 +83,23 @@ TEST(CoupledWalks, KeepTheLimitsOfEachDirection) {
     EXPECT_GT(cycles, 50'000);
 }
 
+// The same while somebody turns the operator's override, of one axis or all, slowly or at once.
+TEST(CoupledWalks, KeepEveryRuleUnderTheHandOfAnOperator) {
+    WalkCounts counts;
+    long cycles = 0, compared = 0;
+    const auto walked = taktwerk::test::walk_seeds(
+        usual / 2, length, [&](unsigned seed) { return CoupledWalk(seed, counts, Directions::alike, Operators::at_the_override); },
+        [&](CoupledWalk& walk) {
+            cycles += walk.cycles() * static_cast<long>(walk.rig().axes.size());
+            for (const auto& oracle : walk.rig().oracles) compared += oracle.compared();
+        });
+    if (walked.one_alone || HasFailure()) return;
+    EXPECT_GT(compared, cycles / 2);
+    EXPECT_GT(cycles, 50'000);
+    EXPECT_GT(counts["operator's override"], 20 * walked.walks);
+    EXPECT_GT(counts["operator's override of a coupling"], walked.walks);
+    EXPECT_GT(counts["overridden"], 100 * walked.walks);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

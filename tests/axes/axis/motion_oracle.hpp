@@ -239,8 +239,8 @@ private:
         const bool rests = b.velocity == 0 && b.acceleration == 0;
         // What begins and ends in one cycle shows no limiter: by what may have been a stop, as that in front of another mode of the drive.
         const bool stops = next.stops || last_.stops ||
-                           (rests && (view.active == 0 || view.override_factors.velocity * view.operators_override == 0 ||
-                                      runs_at_velocity(next.kind) || changes_mode(next.kind) || next.kind == CommandKind::halt));
+                           (rests && (view.active == 0 || overridden_to_rest(view) || runs_at_velocity(next.kind) ||
+                                      changes_mode(next.kind) || next.kind == CommandKind::halt));
         if (stops && a.velocity * a.acceleration <= 0) {
             rests_now = rests && 2 * std::abs(a.velocity) <= std::abs(a.acceleration) * T * rounding;
             if (a.velocity != 0) most_jerk = std::max(most_jerk, a.acceleration * a.acceleration / (2 * std::abs(a.velocity)));
@@ -362,8 +362,12 @@ private:
 
     [[nodiscard]] static bool either(const Sample& a, const Sample& b, AxisState state) { return a.state == state || b.state == state; }
     [[nodiscard]] static bool runs_at_velocity(CommandKind kind) { return kind == CommandKind::move_velocity || kind == CommandKind::jog; }
+    /// Less than this share is none (Override), also where it is the product of both factors.
+    [[nodiscard]] static bool overridden_to_rest(const AxisView& view) {
+        return view.override_factors.velocity * view.operators_override < 1e-9;
+    }
     [[nodiscard]] static bool stops(const AxisView& view) {
-        const bool held = view.limiter == VelocityLimiter::override_factor && view.override_factors.velocity * view.operators_override == 0;
+        const bool held = view.limiter == VelocityLimiter::override_factor && overridden_to_rest(view);
         return held || view.limiter == VelocityLimiter::stopping || view.state == AxisState::Stopping || view.state == AxisState::ErrorStop;
     }
     [[nodiscard]] static bool changes_mode(CommandKind kind) {
