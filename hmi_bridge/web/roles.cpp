@@ -23,7 +23,10 @@ const CommandRule* find_rule(std::string_view command) {
     return found == command_rules.end() ? nullptr : &*found;
 }
 
-bool answers_long(std::string_view command) { return std::find(long_answers.begin(), long_answers.end(), command) != long_answers.end(); }
+bool only_asks(const CommandRule& rule) {
+    constexpr std::array<std::string_view, 4> of_a_connection{"stop", "scope_arm", "scope_state", "scope_disarm"};
+    return !rule.moves && std::find(of_a_connection.begin(), of_a_connection.end(), rule.command) == of_a_connection.end();
+}
 
 bool may(Role role, const CommandRule& rule) { return static_cast<int>(role) >= static_cast<int>(rule.least); }
 

@@ -73,11 +73,9 @@ inline constexpr std::array command_rules{
     CommandRule{"recording_read", Role::viewer, false},
 };
 
-/// Whose answers may be long: they come over a connection of their own, so that they delay neither a stop nor the renewal of a jog.
-inline constexpr std::array<std::string_view, 14> long_answers{
-    "layout",     "scope_signals", "scope_read",       "recordings", "recording_signals", "recording_read", "histograms", "bus", "views",
-    "view_image", "alarm_history", "drive_parameters", "log",        "measure_result"};
-[[nodiscard]] bool answers_long(std::string_view command);
+/// What moves nothing and belongs to no connection: all pages ask it over one connection in turn (question_turns.hpp), so that it delays neither a stop nor
+/// the renewal of a jog, and takes no place at the machine from who commands. Not so a stop, nor a trigger, which ends with its connection.
+[[nodiscard]] bool only_asks(const CommandRule& rule);
 
 /// Null: no such command.
 [[nodiscard]] const CommandRule* find_rule(std::string_view command);

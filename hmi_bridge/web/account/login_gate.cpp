@@ -1,6 +1,12 @@
 #include "hmi_bridge/web/account/login_gate.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
+
+#include <fmt/format.h>
+
+#include "hmi_bridge/web/page_origin.hpp"
 
 namespace taktwerk::hmi::web {
 namespace {
@@ -8,6 +14,16 @@ namespace {
 /// Until `used` is below `most` again.
 Duration until_below(double used, double most) {
     return used < most ? Duration{} : std::max(from_seconds((used - most + 1) * to_seconds(LoginGate::one_more)), Duration{1});
+}
+
+/// Whose tries an address has.
+std::string network_of(std::string_view address) {
+    in6_addr six{};
+    if (::inet_pton(AF_INET6, std::string(address.substr(0, address.find('%'))).c_str(), &six) != 1 || is_loopback(address))
+        return std::string(address);
+    std::string network = "net ";
+    for (int i = 0; i < 8; ++i) network += fmt::format("{:02x}", six.s6_addr[i]);
+    return network;
 }
 
 }  // namespace
@@ -19,38 +35,47 @@ double LoginGate::Bucket::used_at(Instant now) {
 }
 
 Duration LoginGate::ask(std::string_view user, std::string_view address, Instant now) {
-    if (auto* pair = known(user, address)) {
+    const auto network = network_of(address);
+    if (auto* pair = known(user, network)) {
         const auto wait = until_below(pair->tries.used_at(now), most_tries);
         if (wait == Duration{}) pair->tries.used += 1;
         return wait;
     }
     auto& of_user = by_user_[slot(user)];
-    auto& of_address = by_address_[slot(address)];
-    if (of_address.used_at(now) == 0) has_failed_[slot(address)] = false;
-    const double share = has_failed_[slot(address)] ? most_tries / 2 : most_tries;
-    const auto wait = std::max(until_below(of_user.used_at(now), share), until_below(of_address.used, most_tries));
+    auto& of_address = by_address_[slot(network)];
+    if (of_address.used_at(now) == 0) has_failed_[slot(network)] = false;
+    const double share = has_failed_[slot(network)] ? most_tries / 2 : most_tries;
+    const bool here = is_loopback(address);  // strangers who spend a name's tries lock nobody out of the computer that he stands at
+    const auto wait = std::max(here ? Duration{} : until_below(of_user.used_at(now), share), until_below(of_address.used, most_tries));
     if (wait == Duration{}) {
-        of_user.used += 1;
+        if (!here) of_user.used += 1;
         of_address.used += 1;
     }
     return wait;
 }
 
 void LoginGate::succeeded(std::string_view user, std::string_view address, Instant now) {
-    if (auto* pair = known(user, address)) {
+    const auto network = network_of(address);
+    if (auto* pair = known(user, network)) {
         pair->tries = {0, now};
         return;
     }
     if (known_.size() >= known_pairs) known_.pop_front();
-    known_.push_back({std::string(user), std::string(address), {0, now}});
+    known_.push_back({std::string(user), network, {0, now}});
     auto& of_user = by_user_[slot(user)];
-    auto& of_address = by_address_[slot(address)];
-    of_user.used = std::max(0.0, of_user.used - 1);
+    auto& of_address = by_address_[slot(network)];
+    if (!is_loopback(address)) of_user.used = std::max(0.0, of_user.used - 1);
     of_address.used = std::max(0.0, of_address.used - 1);
 }
 
 void LoginGate::failed(std::string_view user, std::string_view address) {
-    if (known(user, address) == nullptr) has_failed_[slot(address)] = true;
+    const auto network = network_of(address);
+    if (known(user, network) == nullptr) has_failed_[slot(network)] = true;
+}
+
+bool LoginGate::knows(std::string_view user, std::string_view address) const {
+    const auto network = network_of(address);
+    return std::any_of(known_.begin(), known_.end(), [&](const Pair& pair) { return pair.user == user && pair.address == network; });
 }
 
 std::size_t LoginGate::slot(std::string_view text) const {
@@ -61,9 +86,9 @@ std::size_t LoginGate::slot(std::string_view text) const {
     return static_cast<std::size_t>(hash >> 40) % slots;
 }
 
-LoginGate::Pair* LoginGate::known(std::string_view user, std::string_view address) {
+LoginGate::Pair* LoginGate::known(std::string_view user, const std::string& network) {
     const auto found =
-        std::find_if(known_.begin(), known_.end(), [&](const Pair& pair) { return pair.user == user && pair.address == address; });
+        std::find_if(known_.begin(), known_.end(), [&](const Pair& pair) { return pair.user == user && pair.address == network; });
     return found == known_.end() ? nullptr : &*found;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // How often somebody may try to log in. Whoever guesses waits; whom he pretends to be does not: who has logged in from an address before has tries of
-// his own there, and half of a name's tries are kept for addresses that have not failed. Constant memory. Not thread-safe; not real-time.
+// his own there, half of a name's tries are kept for addresses that have not failed, and at this computer itself only the address counts. An IPv6
+// address is its network of 64 bits, of which one computer has them all (RFC 4291 section 2.5.1). Constant memory. Not thread-safe; not real-time.
 
 #include <array>
 #include <cstddef>
@@ -25,6 +26,8 @@ public:
     /// Zero: try. Else how long to wait; nothing was used up.
     Duration ask(std::string_view user, std::string_view address, Instant now);
     void succeeded(std::string_view user, std::string_view address, Instant now);
+    /// He has logged in from there before.
+    [[nodiscard]] bool knows(std::string_view user, std::string_view address) const;
     void failed(std::string_view user, std::string_view address);
 
 private:
@@ -41,7 +44,7 @@ private:
         Bucket tries;
     };
     [[nodiscard]] std::size_t slot(std::string_view text) const;
-    Pair* known(std::string_view user, std::string_view address);
+    Pair* known(std::string_view user, const std::string& network);
 
     std::uint64_t seed_;
     std::array<Bucket, slots> by_user_{}, by_address_{};

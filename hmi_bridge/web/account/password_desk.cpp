@@ -4,6 +4,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "hmi_bridge/web/account/password.hpp"
@@ -21,11 +22,13 @@ PasswordDesk::~PasswordDesk() {
     thread_.join();
 }
 
-bool PasswordDesk::ask(std::string hash, std::string password, Done done) {
+bool PasswordDesk::ask(std::string hash, std::string password, Turn turn, Done done) {
     {
         const std::lock_guard lock(mutex_);
-        if (tasks_.size() >= most_waiting) return false;
-        tasks_.push_back({std::move(hash), std::move(password), std::move(done)});
+        const auto same = [turn](const Task& task) { return task.turn == turn; };
+        if (static_cast<std::size_t>(std::count_if(tasks_.begin(), tasks_.end(), same)) >= most_waiting) return false;
+        const auto at = turn == Turn::last ? tasks_.end() : std::find_if_not(tasks_.begin(), tasks_.end(), same);
+        tasks_.insert(at, {std::move(hash), std::move(password), turn, std::move(done)});
     }
     more_.notify_one();
     return true;

@@ -8,6 +8,7 @@
 
 #include "hmi_bridge/web/outbox.hpp"
 #include "hmi_bridge/web/server/machine_line.hpp"
+#include "hmi_bridge/web/server/question_desk.hpp"
 
 namespace taktwerk::hmi::web {
 
@@ -16,7 +17,11 @@ public:
     using Told = std::function<void(Feed&)>;
     /// `changed`: what a hello tells is another. `fresh`: there are new values.
     Feed(asio::io_context& io, std::string path, Told changed, Told fresh)
-        : io_(io), path_(std::move(path)), changed_(std::move(changed)), fresh_told_(std::move(fresh)) {}
+        : io_(io),
+          path_(std::move(path)),
+          changed_(std::move(changed)),
+          fresh_told_(std::move(fresh)),
+          questions_(std::make_shared<QuestionDesk>(io, path_)) {}
 
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] const std::string& name() const { return name_; }      ///< empty before its first hello
@@ -29,14 +34,7 @@ public:
     [[nodiscard]] bool online() const { return connected() && !name_.empty(); }
     [[nodiscard]] MachineLine& line() { return *line_; }
 
-    /// For answers that are long: what is asked here delays neither values nor a stop.
-    MachineLine& long_line() {
-        if (!long_line_ || long_line_->closed()) {
-            long_line_ = std::make_shared<MachineLine>(io_, path_);
-            long_line_->open();
-        }
-        return *long_line_;
-    }
+    [[nodiscard]] QuestionDesk& questions() { return *questions_; }
 
     void connect() {
         asking_ = false;
@@ -58,12 +56,12 @@ public:
     }
     void close(const std::string& why) {
         if (line_) line_->close(why);
-        if (long_line_) long_line_->close(why);
+        questions_->close(why);
     }
     /// `watched`: somebody looks.
     void step(Instant at, bool watched) {
         if (line_) line_->expire(at);
-        if (long_line_) long_line_->expire(at);
+        questions_->step(at);
         if (online() != std::exchange(told_online_, online())) change();
         if (online() && !asking_ && watched) ask_values();
     }
@@ -103,7 +101,8 @@ private:
     asio::io_context& io_;
     std::string path_, name_, why_ = "not asked yet", layout_ = "null";
     Told changed_, fresh_told_;
-    std::shared_ptr<MachineLine> line_, long_line_;
+    std::shared_ptr<MachineLine> line_;
+    std::shared_ptr<QuestionDesk> questions_;
     Outbox::Text values_;
     std::int64_t cycle_ = -1;
     Instant fresh_{};

@@ -14,6 +14,10 @@
 
 namespace taktwerk::hmi::web {
 
+inline Error unknown_machine(const std::string& name) {
+    return Error{"web.unknown_machine", name, "there is no such machine on this host", "Choose one of the list."};
+}
+
 class Feeds {
 public:
     /// `wanted`: names or paths; empty: all. `fresh`: a machine has new values.

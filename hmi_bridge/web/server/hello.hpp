@@ -31,4 +31,14 @@ inline std::string hello_text(const Site& site, const Feed* feed, std::optional<
     return text + ",\"layout\":" + (feed != nullptr ? feed->layout() : std::string("null")) + "}";
 }
 
+/// Instead of values, while there are no new ones.
+inline std::string stale_text(const Feed& feed, Instant at) {
+    return text_of(Json{{"type", "stale"},
+                        {"machine", feed.name()},
+                        {"age_ms", feed.fresh() == Instant{} ? Json{} : Json((at - feed.fresh()) / 1ms)},
+                        {"why", feed.why()}});
+}
+
+inline Error log_in_first() { return Error{"web.login", "", "nobody has logged in at this page", "Log in."}; }
+
 }  // namespace taktwerk::hmi::web

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -23,8 +24,7 @@ public:
         error_code ignored;
         const auto peer = stream_.socket().remote_endpoint(ignored);
         peer_ = plain(peer.address());
-        visitor_.address = peer_;
-        visitor_.from = fmt::format("{}:{}", peer_, peer.port());
+        peer_port_ = peer.port();
         visitor_.arrived = plain(stream_.socket().local_endpoint(ignored).address());
     }
     void read() {
@@ -47,14 +47,24 @@ private:
         return address.to_string();
     }
     [[nodiscard]] std::string header(http::field name) const { return std::string(parser_->get()[name]); }
-    [[nodiscard]] std::string header(const char* name) const { return std::string(parser_->get()[name]); }
 
-    /// What a proxy says of whom it brings counts only from one that was named.
+    /// Of several lines the last: a proxy may put its own behind those that came to it.
+    [[nodiscard]] std::string last_header(const char* name) const {
+        std::string value;
+        const auto lines = parser_->get().equal_range(name);
+        for (auto line = lines.first; line != lines.second; ++line) value = std::string(line->value());
+        return value;
+    }
+
+    /// What a proxy says of whom it brings counts only from one that was named, and for this request alone: the next may bring another.
     void look_at_proxy() {
+        visitor_.address = peer_;
+        visitor_.from = fmt::format("{}:{}", peer_, peer_port_);
+        visitor_.secure = false;
         const auto& proxies = site_->options.proxies;
         if (std::find(proxies.begin(), proxies.end(), peer_) == proxies.end()) return;
-        visitor_.secure = header("X-Forwarded-Proto") == "https";
-        const auto chain = header("X-Forwarded-For");
+        visitor_.secure = last_header("X-Forwarded-Proto") == "https";
+        const auto chain = last_header("X-Forwarded-For");
         const auto begin = chain.find_last_of(", ");
         const auto client = begin == std::string::npos ? chain : chain.substr(begin + 1);
         error_code failure;
@@ -70,6 +80,8 @@ private:
         if (failure) return;  // the destructor closes
         look_at_proxy();
         const auto& request = parser_->get();
+        if (request.count(http::field::host) > 1 || request.count(http::field::origin) > 1)  // RFC 9112 section 3.2
+            return say(http::status::bad_request, "Host or Origin stands twice");
         const std::string host = header(http::field::host), origin = header(http::field::origin), target(request.target());
         if (!site_->origin.knows_host(host, visitor_.arrived)) return say(http::status::forbidden, "this server has another name");
         if (target == "/ws" && websocket::is_upgrade(request)) {
@@ -94,12 +106,23 @@ private:
         auto session = site_->accounts.sessions.find(token(), now());
         auto& pages = site_->pages;
         if (!session && site_->accounts.needed()) make_room_among_strangers();
-        const auto known = std::count_if(pages.begin(), pages.end(), [](const auto& page) { return !page->is_stranger(); });
-        if ((session || !site_->accounts.needed()) && static_cast<std::size_t>(known) >= WebServer::most_pages)
+        if ((session || !site_->accounts.needed()) && !make_room_among_users(session.get()))
             return say(http::status::service_unavailable, "too many pages are open");
         const auto page = std::make_shared<PageSession>(std::move(stream_), site_, std::move(session), visitor_);
         pages.insert(page);
         page->accept(parser_->get());
+    }
+    /// False: no place, and nobody has to give his.
+    bool make_room_among_users(const Session* session) {
+        std::vector<std::shared_ptr<PageSession>> pages;
+        for (const auto& page : site_->pages)
+            if (!page->is_stranger() && !page->ended()) pages.push_back(page);
+        if (pages.size() < WebServer::most_pages) return true;
+        std::vector<Seat> seats;
+        for (const auto& page : pages) seats.push_back(page->seat());
+        const auto who = session == nullptr ? std::nullopt : who_gives_way(seats, session->user, session->role);
+        if (who) pages[*who]->end();
+        return who.has_value();
     }
     void make_room_among_strangers() {
         std::shared_ptr<PageSession> oldest;
@@ -128,11 +151,12 @@ private:
         }
         const auto* user = accounts.users.find(request->user);
         const auto hash = user == nullptr ? std::string{} : user->password;
-        const bool taken =
-            accounts.desk().ask(hash, request->password,
-                                [self = shared_from_this(), name = request->user, hash, executor = site_->io.get_executor()](bool matches) {
-                                    asio::post(executor, [self, name, hash, matches] { self->logged_in(name, hash, matches); });
-                                });
+        const bool taken = accounts.desk().ask(
+            hash, request->password,
+            accounts.gate.knows(request->user, visitor_.address) ? PasswordDesk::Turn::before_strangers : PasswordDesk::Turn::last,
+            [self = shared_from_this(), name = request->user, hash, executor = site_->io.get_executor()](bool matches) {
+                asio::post(executor, [self, name, hash, matches] { self->logged_in(name, hash, matches); });
+            });
         stream_.expires_after(30s);
         if (taken) return;
         retry_after_ = 1;
@@ -207,6 +231,7 @@ private:
     std::shared_ptr<Site> site_;
     Visitor visitor_;
     std::string peer_, cookie_;
+    unsigned peer_port_ = 0;
     long retry_after_ = 0;  ///< s, of the next answer
     beast::flat_buffer in_{16 * 1024};
     std::optional<http::request_parser<http::string_body>> parser_;

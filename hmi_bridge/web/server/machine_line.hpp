@@ -31,12 +31,7 @@ public:
     }
     /// Everybody who waits is answered.
     void close(const std::string& why) {
-        if (closed_) return;
-        closed_ = true;
-        error_code ignored;
-        socket_.close(ignored);
-        for (auto& one : std::exchange(waiting_, {}))
-            one.second.answer(failed_answer({"socket.closed", path_, why, "See that the machine runs, then give the command again."}));
+        close_with(failed_answer({"socket.closed", path_, why, "See that the machine runs, then give the command again."}));
     }
     void ask(Json request, Duration patience, Answer answer) {
         if (closed_)
@@ -62,6 +57,8 @@ public:
         }
     }
     [[nodiscard]] bool closed() const { return closed_; }
+    /// The machine has given it a place: it has answered.
+    [[nodiscard]] bool proven() const { return proven_ && !closed_; }
     [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
 private:
@@ -70,6 +67,13 @@ private:
         Instant until;
     };
 
+    void close_with(const MachineAnswer& answer) {
+        if (closed_) return;
+        closed_ = true;
+        error_code ignored;
+        socket_.close(ignored);
+        for (auto& one : std::exchange(waiting_, {})) one.second.answer(answer);
+    }
     void write() {
         if (out_.empty() || closed_) return;
         asio::async_write(socket_, asio::buffer(out_.front()), [self = shared_from_this()](error_code failure, std::size_t) {
@@ -88,7 +92,9 @@ private:
         });
     }
     void take(const NumberedAnswer& answer) {
-        if (!answer.id) return close(answer.answer.ok ? "the machine takes no more clients" : answer.answer.keys);
+        // Said to nobody's request: that it takes no more clients, and the like. Its own words are the answer.
+        if (!answer.id) return answer.answer.ok ? close("the machine takes no more clients") : close_with(answer.answer);
+        proven_ = true;
         const auto found = waiting_.find(*answer.id);
         if (found == waiting_.end()) return;
         const auto done = std::move(found->second.answer);
@@ -102,7 +108,7 @@ private:
     std::deque<std::string> out_;
     std::map<std::int64_t, Waiting> waiting_;
     std::int64_t next_id_ = 1;
-    bool connected_ = false, closed_ = false;
+    bool connected_ = false, proven_ = false, closed_ = false;
 };
 
 }  // namespace taktwerk::hmi::web

@@ -38,6 +38,7 @@ struct Site {
     PageOrigin origin;
     std::string cookie;  ///< its name: cookies know no ports, and a host may serve several
     std::set<std::shared_ptr<PageSession>> pages{};
+    std::uint64_t pages_ever = 0;
     std::list<std::weak_ptr<HttpConnection>> connections{};  ///< HTTP, the one heard of last at the end
 
     RefusalBudget refused{};  ///< by user; strangers are one, and so are logins that failed

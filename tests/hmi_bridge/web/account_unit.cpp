@@ -2,9 +2,13 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <condition_variable>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +16,7 @@
 #include "hmi_bridge/web/account/login_gate.hpp"
 #include "hmi_bridge/web/account/login_request.hpp"
 #include "hmi_bridge/web/account/password.hpp"
+#include "hmi_bridge/web/account/password_desk.hpp"
 #include "hmi_bridge/web/account/sessions.hpp"
 #include "hmi_bridge/web/account/users.hpp"
 
@@ -186,6 +191,59 @@ TEST(LoginGateRule, AKnownAddressGuessesNoFaster) {
     int tries = 0;
     for (int i = 0; i < 100; ++i) tries += gate.ask("anna", "10.0.0.1", now) == 0s ? 1 : 0;
     EXPECT_EQ(tries, 10);
+}
+
+// A computer has its whole network of 64 bits (RFC 4291 section 2.5.1): as many addresses as it likes are one.
+TEST(LoginGateRule, AnIpv6NetworkIsOneAddress) {
+    LoginGate gate(1);
+    const Instant now{100s};
+    int tries = 0;
+    for (int i = 0; i < 200; ++i) tries += gate.ask("user" + std::to_string(i), "2001:db8:1:2::" + std::to_string(i), now) == 0s ? 1 : 0;
+    EXPECT_EQ(tries, 10);
+    EXPECT_EQ(gate.ask("anna", "2001:db8:1:3::1", now), 0s) << "another network is another address";
+    gate.succeeded("anna", "2001:db8:1:3::1", now);
+    EXPECT_TRUE(gate.knows("anna", "2001:db8:1:3:ffff::7"));
+    EXPECT_FALSE(gate.knows("anna", "2001:db8:1:4::1"));
+    EXPECT_FALSE(gate.knows("emil", "2001:db8:1:3::1"));
+}
+
+// A crowd that spends a name's tries, each address its first one, locks nobody out of the computer itself; guessing there is as slow.
+TEST(LoginGateRule, AtTheComputerItselfOnlyTheAddressCounts) {
+    LoginGate gate(1);
+    const Instant now{100s};
+    for (int i = 0; i < 100; ++i) (void)gate.ask("adam", "10.0.1." + std::to_string(i), now);
+    ASSERT_GT(gate.ask("adam", "10.0.2.1", now), 0s) << "else nothing was spent";
+    for (const char* here : {"127.0.0.1", "::1"}) {
+        int tries = 0;
+        for (int i = 0; i < 100; ++i) tries += gate.ask("adam", here, now) == 0s ? 1 : 0;
+        EXPECT_EQ(tries, 10) << here;
+    }
+}
+
+TEST(PasswordDesk, WhoHasBeenHereBeforeDoesNotWaitForACrowd) {
+    const auto hash = *hash_password("correct horse");
+    std::mutex mutex;
+    std::condition_variable one_more;
+    std::vector<std::string> done;
+    PasswordDesk desk;
+    const auto ask = [&](const std::string& who, PasswordDesk::Turn turn) {
+        return desk.ask(hash, "correct horse", turn, [&, who](bool matches) {
+            EXPECT_TRUE(matches);
+            const std::lock_guard lock(mutex);
+            done.push_back(who);
+            one_more.notify_one();
+        });
+    };
+    std::size_t strangers = 0;
+    while (strangers < 20 && ask("stranger", PasswordDesk::Turn::last)) ++strangers;
+    EXPECT_LT(strangers, 20u);
+    EXPECT_TRUE(ask("anna", PasswordDesk::Turn::before_strangers));
+    EXPECT_TRUE(ask("emil", PasswordDesk::Turn::before_strangers));
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(one_more.wait_for(lock, 60s, [&] { return done.size() == strangers + 2; }));
+    const auto place = [&](const char* who) { return std::find(done.begin(), done.end(), who) - done.begin(); };
+    EXPECT_LE(place("anna"), 1) << "at most behind the one that was being computed";
+    EXPECT_EQ(place("emil"), place("anna") + 1);
 }
 
 TEST(LoginRequests, AreOneObjectOfTwoTexts) {

@@ -62,5 +62,17 @@ TEST(CommandTable, AViewerLooksAndStops) {
     EXPECT_EQ(find_rule("stop")->least, Role::viewer);
 }
 
+// Over the connection of all pages goes what neither moves nor belongs to one of them: a trigger ends with its connection, a stop waits for nobody's turn.
+TEST(CommandTable, WhatOnlyAsksMovesNothing) {
+    for (const auto& rule : command_rules) {
+        if (only_asks(rule)) {
+            EXPECT_FALSE(rule.moves) << rule.command;
+        }
+    }
+    for (const char* one : {"stop", "scope_arm", "scope_state", "scope_disarm", "jog", "set_value"})
+        EXPECT_FALSE(only_asks(*find_rule(one))) << one;
+    for (const char* one : {"state", "drive_read", "scope_read", "log", "measure_plan"}) EXPECT_TRUE(only_asks(*find_rule(one))) << one;
+}
+
 }  // namespace
 }  // namespace taktwerk::hmi::web

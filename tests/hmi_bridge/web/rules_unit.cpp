@@ -8,10 +8,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hmi_bridge/web/held_buttons.hpp"
 #include "hmi_bridge/web/message_age.hpp"
 #include "hmi_bridge/web/outbox.hpp"
 #include "hmi_bridge/web/page_message.hpp"
 #include "hmi_bridge/web/page_origin.hpp"
+#include "hmi_bridge/web/page_seats.hpp"
+#include "hmi_bridge/web/question_turns.hpp"
 #include "hmi_bridge/web/site_files.hpp"
 
 namespace taktwerk::hmi::web {
@@ -239,6 +242,68 @@ TEST(PageFiles, OnlyWhatLiesInTheFolderItself) {
     for (const char* target :
          {"", "page.js", "/users.yaml", "/link.html", "/inner.js", "/../etc/passwd", "/page.js?x", "//page.js", "/%2e%2e/"})
         EXPECT_EQ(site->find(target), nullptr) << target;
+}
+
+// Nobody keeps everybody else out: with the most pages one gives way, and who may less to who may more; and nobody who has been put out puts another out.
+TEST(PageSeats, GoToWhoHasFewerAndToWhoMayMore) {
+    const auto at = [](int second) { return Instant{std::chrono::seconds(second)}; };
+    std::vector<Seat> greedy;
+    for (int i = 0; i < 16; ++i) greedy.push_back({"olga", Role::viewer, at(20 - i)});
+    EXPECT_EQ(who_gives_way(greedy, "anna", Role::operates), 15u) << "the one unused the longest";
+    EXPECT_EQ(who_gives_way(greedy, "otto", Role::viewer), 15u) << "whatever he may";
+    EXPECT_EQ(who_gives_way(greedy, "olga", Role::viewer), std::nullopt);
+    greedy[15] = {"anna", Role::operates, at(30)};
+    EXPECT_EQ(who_gives_way(greedy, "olga", Role::viewer), std::nullopt) << "she has most of them already";
+    EXPECT_EQ(who_gives_way(greedy, "emil", Role::engineer), 14u) << "not the one of who has one";
+
+    std::vector<Seat> crowd;
+    for (int i = 0; i < 16; ++i) crowd.push_back({"user" + std::to_string(i), i < 3 ? Role::viewer : Role::operates, at(i)});
+    EXPECT_EQ(who_gives_way(crowd, "adam", Role::admin), 0u);
+    EXPECT_EQ(who_gives_way(crowd, "anna", Role::operates), 0u);
+    EXPECT_EQ(who_gives_way(crowd, "otto", Role::viewer), std::nullopt);
+    for (int i = 0; i < 3; ++i) crowd[static_cast<std::size_t>(i)].role = Role::operates;
+    EXPECT_EQ(who_gives_way(crowd, "anna", Role::operates), std::nullopt);
+    EXPECT_EQ(who_gives_way({}, "anna", Role::operates), std::nullopt);
+}
+
+TEST(QuestionTurnsRule, WhoAsksMuchDelaysTheOthersByOneAnswer) {
+    QuestionTurns<int> turns;
+    for (int i = 0; i < 30; ++i) turns.put(1, i);
+    for (int i = 0; i < 30; ++i) turns.put(2, 100 + i);
+    std::vector<int> asked;
+    for (auto next = turns.next(); next; next = turns.next()) asked.push_back(next->second);
+    EXPECT_EQ(asked, (std::vector{0, 100, 1, 101})) << "two of each, in turn, four in all";
+    turns.put(3, 200);
+    EXPECT_FALSE(turns.next());
+    turns.answered(1);
+    EXPECT_EQ(turns.next()->second, 200) << "before the thirty that have waited longer";
+    turns.answered(3);
+    EXPECT_EQ(turns.next()->second, 2);
+    int removed = 0;
+    turns.remove([](QuestionTurns<int>::Asker asker, int) { return asker == 1; }, [&](int) { ++removed; });
+    EXPECT_EQ(removed, 27);
+    EXPECT_EQ(turns.waiting(), 28u);
+    turns.answered(7);  // of nobody
+    EXPECT_FALSE(turns.next());
+}
+
+TEST(HeldButtonsRule, OnlyWhatTheMachineTookAsPressedIsRenewed) {
+    const auto message = [](const std::string& more) {
+        return std::get<PageMessage>(read_page_message(R"({"type":"command","id":1,"sent_ms":1,)" + more + "}"));
+    };
+    const auto press = message(R"("cmd":"set_value","variable":"start","value":1,"press":true)"),
+               renewal = message(R"("cmd":"set_value","variable":"start","value":1,"press":false)"),
+               other = message(R"("cmd":"set_value","variable":"pace","value":1,"press":false)"),
+               gone = message(R"("cmd":"set_value","variable":"start","value":0)");
+    HeldButtons buttons;
+    EXPECT_FALSE(buttons.is_renewal(renewal));
+    buttons.taken(press);
+    EXPECT_FALSE(buttons.is_renewal(press));
+    EXPECT_TRUE(buttons.is_renewal(renewal));
+    EXPECT_FALSE(buttons.is_renewal(other));
+    buttons.taken(gone);
+    EXPECT_FALSE(buttons.is_renewal(renewal));
+    EXPECT_TRUE(buttons.is_renewal(message(R"("cmd":"jog","axis":"x","velocity":1)")));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Strangers, slow readers and long answers before the page's server: what is dropped, what flows on, and that a stop passes everything.
 
+#include <sys/un.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -117,6 +119,82 @@ TEST_F(ServerLimits, TheSeventeenthPageIsToldThatTheyAreTooMany) {
         if (!opened) ::usleep(20'000);
     }
     EXPECT_TRUE(opened);
+}
+
+TEST_F(ServerLimits, AViewerWithSixteenPagesKeepsNoOperatorOut) {
+    ServerOptions options;
+    options.users = users_file();
+    serve(options);
+    const auto olga = cookie_of("olga");
+    std::deque<PageClient> pages;
+    for (std::size_t i = 0; i < WebServer::most_pages; ++i) {
+        pages.emplace_back();
+        ASSERT_TRUE(pages.back().open(port, olga)) << i;
+        ASSERT_FALSE(pages.back().next("hello").is_null());
+    }
+    PageClient operators, another;
+    ASSERT_TRUE(operators.open(port, cookie_of("anna")));
+    ASSERT_TRUE(shows_machine(operators));
+    EXPECT_EQ(operators.ask({{"cmd", "mode"}, {"mode", "manual"}})["ok"], true);
+    EXPECT_TRUE(pages.front().is_closed(3s)) << "the one that had been there the longest";
+    EXPECT_FALSE(another.open(port, olga));
+    EXPECT_EQ(another.status(), 503);
+    EXPECT_EQ(operators.ask({{"cmd", "mode"}, {"mode", "manual"}})["ok"], true) << "who was put out puts nobody out";
+}
+
+// Ten pages that ask for what needs no place, and arm triggers, which do: an operator's command finds one all the same.
+TEST_F(ServerLimits, ViewersTakeNoOperatorsPlaceAtTheMachine) {
+    ServerOptions options;
+    options.users = users_file();
+    serve(options);
+    const auto olga = cookie_of("olga");
+    std::deque<PageClient> pages;
+    int armed = 0;
+    for (int i = 0; i < 10; ++i) {
+        auto& page = pages.emplace_back();
+        ASSERT_TRUE(page.open(port, olga));
+        ASSERT_TRUE(shows_machine(page));
+        for (const char* cmd : {"drive_read", "state", "alarms", "measure_plan", "hello"})
+            EXPECT_EQ(page.ask({{"cmd", cmd}})["ok"], true) << cmd;
+        const auto answer = page.ask({{"cmd", "scope_arm"}});
+        if (answer["ok"] == true) ++armed;
+        else EXPECT_EQ(answer["error"]["code"], "web.busy");
+    }
+    EXPECT_EQ(armed, 2);
+    EXPECT_EQ(machine.connections(), 4u) << "the server's, that of all questions, two triggers";
+    PageClient operators;
+    ASSERT_TRUE(operators.open(port, cookie_of("anna")));
+    ASSERT_TRUE(shows_machine(operators));
+    EXPECT_EQ(operators.ask({{"cmd", "scope_arm"}})["ok"], true);
+    EXPECT_EQ(operators.ask({{"cmd", "take_control"}, {"axis", "x"}})["ok"], true);
+    pages.pop_front();
+    for (int tries = 0; tries < 200 && machine.connections() > 4; ++tries) ::usleep(10'000);
+    EXPECT_EQ(pages.back().ask({{"cmd", "scope_arm"}})["ok"], true) << "in the place of who has gone";
+}
+
+// The machine has eight places, and others have them: a stop of a page whose own connection is refused is carried out, and the refusal has the machine's words.
+TEST_F(ServerLimits, AStopNeedsNoPlaceAndWhatDoesIsToldWhy) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    std::vector<int> others;
+    for (int i = 0; i < 7; ++i) {
+        others.push_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+        sockaddr_un to{};
+        to.sun_family = AF_UNIX;
+        machine.path().copy(to.sun_path, sizeof to.sun_path - 1);
+        ASSERT_EQ(::connect(others.back(), reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    }
+    for (int tries = 0; tries < 200 && machine.connections() < 8; ++tries) ::usleep(5'000);
+    ASSERT_EQ(machine.connections(), 8u);
+    const auto refused = page.ask({{"cmd", "mode"}, {"mode", "manual"}});
+    ASSERT_EQ(refused.value("ok", true), false) << refused.dump();
+    EXPECT_EQ(refused["error"]["code"], "socket.too_many_clients");
+    page.command({{"cmd", "mode"}, {"mode", "manual"}});
+    EXPECT_EQ(page.ask({{"cmd", "stop"}})["ok"], true);
+    EXPECT_GE(machine.asked("stop").size(), 1u);
+    for (const int other : others) ::close(other);
 }
 
 TEST_F(ServerLimits, StrangersKeepNoUserOut) {

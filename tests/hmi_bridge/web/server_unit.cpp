@@ -273,6 +273,37 @@ TEST_F(ServedSite, CookiesAreSecureBehindATrustedProxyAlone) {
     EXPECT_EQ(audit().back()["from"], "10.1.1.1 by 127.0.0.1");
 }
 
+// A proxy may put its line behind what a stranger wrote himself (HAProxy does); and what it said of one request is not said of the next.
+TEST_F(ServedSite, OfWhomAProxyBringsItsOwnWordCounts) {
+    ServerOptions options;
+    options.users = users_file();
+    options.proxies = {"127.0.0.1"};
+    serve(options);
+    EXPECT_EQ(log_in("anna", "anna-secret", "X-Forwarded-For: 6.6.6.6\r\nX-Forwarded-For: 7.7.7.7, 10.1.1.1\r\n").status, 200);
+    EXPECT_EQ(audit().back()["from"], "10.1.1.1 by 127.0.0.1");
+    TcpEnd end;
+    ASSERT_TRUE(end.open(port));
+    const auto host = "127.0.0.1:" + std::to_string(port);
+    const auto body = PageJson{{"user", "anna"}, {"password", "anna-secret"}}.dump();
+    end.write("GET / HTTP/1.1\r\nHost: " + host +
+              "\r\nX-Forwarded-For: 10.2.2.2\r\nX-Forwarded-Proto: https\r\n\r\nPOST /api/login HTTP/1.1\r\nHost: " + host + "\r\n" +
+              own_origin() + "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+    std::string got;
+    for (const auto until = PageClock::now() + 30s; PageClock::now() < until && end.read(got, 50ms);) {}
+    ASSERT_THAT(got, HasSubstr("Set-Cookie"));
+    EXPECT_THAT(got, ::testing::Not(HasSubstr("Secure")));
+    EXPECT_THAT(audit().back()["from"].get<std::string>(), ::testing::StartsWith("127.0.0.1:"));
+}
+
+// RFC 9112 section 3.2: which of two a proxy has looked at, nobody knows.
+TEST_F(ServedSite, AHostOrAnOriginThatStandsTwiceIsRefused) {
+    serve();
+    EXPECT_EQ(http_request(port, "GET /", "Host: evil.example\r\n").status, 400);
+    PageClient page;
+    EXPECT_FALSE(page.open(port, "Origin: http://evil.example\r\n"));
+    EXPECT_EQ(page.status(), 400);
+}
+
 TEST_F(ServedSite, EachCommandIsWrittenDownWithWhoFromWhereWhatAndTheAnswer) {
     ServerOptions options;
     options.users = users_file();

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -72,18 +73,25 @@ public:
     std::string odd_hello;  ///< the answer to hello behind its id, of something that is no machine; set while it is stopped
 
 private:
-    void on_open(ConnectionId, const Peer&) override {
+    void on_open(ConnectionId connection, const Peer& peer) override {
         const std::lock_guard lock(mutex_);
         ++open_;
+        if (peer.in_reserve) in_reserve_.insert(connection);
     }
-    void on_close(ConnectionId) override {
+    void on_close(ConnectionId connection) override {
         const std::lock_guard lock(mutex_);
         --open_;
+        in_reserve_.erase(connection);
     }
     void on_line(ConnectionId connection, std::string_view line, Instant now) override {
         const auto request = nlohmann::json::parse(line, nullptr, false);
         if (!request.is_object()) return;
         const auto cmd = request.value("cmd", "");
+        if (in_reserve_.count(connection) != 0 && cmd != "stop" && cmd != "shutdown") {
+            server_->send(connection,
+                          R"({"id":null,"ok":false,"error":{"code":"socket.too_many_clients","subject":"","what":"full","remedy":""}})");
+            return;
+        }
         const bool by_itself = cmd == "hello" || cmd == "layout" || cmd == "state";
         if (!by_itself) {
             const std::lock_guard lock(mutex_);
@@ -112,6 +120,7 @@ private:
     std::mutex mutex_;
     std::vector<Asked> asked_;
     std::size_t open_ = 0;
+    std::set<ConnectionId> in_reserve_;
     std::int64_t cycle_ = 0;
 };
 
