@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
 #include "axes/axis/parameters.hpp"
 #include "ecat/wire/al_status.hpp"
@@ -13,6 +14,7 @@
 #include "hmi_bridge/socket/json_writer.hpp"
 #include "hmi_bridge/words/event_text.hpp"
 #include "hmi_bridge/words/words.hpp"
+#include "runtime/alarms.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -29,6 +31,26 @@ void put_limit(JsonWriter& json, std::string_view key, const axes::AxisView& axi
     json.key(key);
     if (axis.parameters[axes::place_of(enabled)] != 0) json.value(axis.parameters[axes::place_of(limit)]);
     else json.value(std::nullopt);
+}
+
+/// What stopped the axis: its alarm may be gone long before somebody resets.
+void put_error(JsonWriter& json, AlarmId error) {
+    const auto* info = find_alarm(axes::axis_alarms, error);
+    if (!info) info = find_alarm(runtime::machine_alarms, error);
+    if (!info) return;
+    json.field("error_name", info->name);
+    json.field("error_cause", info->cause);
+    json.field("error_remedy", info->remedy);
+}
+
+/// Nobody pressed it: the slave with its input is not exchanged.
+bool emergency_stop_is_unread(const runtime::Snapshot& s) {
+    for (std::size_t i = 0; i < s.alarm_count && i < s.alarms.size(); ++i) {
+        const auto& alarm = s.alarms[i];
+        if (alarm.standing && alarm.fact.id == id(runtime::MachineAlarm::emergency_stop))
+            return alarm.fact.a == runtime::emergency_stop_unread;
+    }
+    return false;
 }
 
 void put_axis(JsonWriter& json, const axes::AxisView& axis, const runtime::FollowingPeak& peak, const runtime::MachineLayout& layout,
@@ -62,6 +84,7 @@ void put_axis(JsonWriter& json, const axes::AxisView& axis, const runtime::Follo
     json.field("resetting", axis.resetting);
     json.field("warning", axis.warning);
     json.field("error", axis.error);
+    put_error(json, axis.error);
     json.field("drive_error", axis.drive_error);
     json.field("actual_position", axis.actual_position);
     json.field("actual_velocity", axis.actual_velocity);
@@ -332,6 +355,7 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine,
     json.field("phase", word(s.phase));
     json.field("mode", word(s.mode));
     json.field("emergency_stop", s.emergency_stop);
+    json.field("emergency_stop_unread", emergency_stop_is_unread(s));
     json.field("simulated", s.simulated);
     put_statistics(json, s.statistics);
     json.key("bus");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -22,8 +23,9 @@ using runtime::RecordedSignal;
 using runtime::SignalRows;
 using runtime::ThinnedRead;
 
-constexpr std::array<std::string_view, 8> scope_words{"scope_signals", "scope_read", "scope_arm",         "scope_state",
-                                                      "scope_disarm",  "recordings", "recording_signals", "recording_read"};
+constexpr std::array<std::string_view, 9> scope_words{"scope_signals",     "scope_read",     "scope_arm",
+                                                      "scope_state",       "scope_disarm",   "recordings",
+                                                      "recording_signals", "recording_read", "recording_part"};
 constexpr std::uint64_t usual_points = 1000;
 static_assert(std::endian::native == std::endian::little, "the numbers of an answer are little-endian");
 
@@ -42,6 +44,10 @@ std::uint64_t cycles_per_pair(std::uint64_t cycles, std::uint64_t points, std::s
     if (cycles <= std::min<std::uint64_t>(points, room)) return 1;
     const auto pairs = std::clamp<std::uint64_t>(points, 1, room / 2);
     return std::max<std::uint64_t>((cycles + pairs - 1) / pairs, 2);
+}
+
+Error slow(const std::string& recording) {
+    return {"recording.slow", recording, "the disk has not given it yet", "Ask again; look at that disk."};
 }
 
 }  // namespace
@@ -137,6 +143,7 @@ Result<void> ScopeRequests::handle_recordings(ConnectionId connection, const std
     }
     Loading loading{connection, id, fields.text("recording", true), {}, now};
     if (cmd == "recording_read") loading.asked = read_asked(fields);
+    if (cmd == "recording_part") loading.part = fields.maybe_count("from").value_or(0);
     fields.finish();
     if (fields.error()) return *fields.error();
     if (recorder_ == nullptr)
@@ -178,8 +185,29 @@ Result<void> ScopeRequests::begin_read(ConnectionId connection, const std::strin
     return {};
 }
 
+bool ScopeRequests::give_part(const Loading& loading, Instant now) {
+    const auto part = recorder_->part(loading.recording, *loading.part);
+    if (!part && now - loading.since < patience) return false;
+    std::optional<Error> error;
+    if (!part) error = slow(loading.recording);
+    else if (!*part) error = part->error();
+    else {
+        std::string data;
+        append_base64(data, std::as_bytes(std::span{(**part).bytes}));
+        answers_.push_back(
+            {loading.connection, loading.id,
+             fmt::format(R"({{"id":{},"ok":true,"size":{},"from":{},"data":"{}"}})", loading.id, (**part).size, *loading.part, data)});
+    }
+    if (error) answers_.push_back({loading.connection, loading.id, {}, std::move(error)});
+    return true;
+}
+
 void ScopeRequests::look_for_loaded(Instant now) {
     for (auto one = loading_.begin(); one != loading_.end();) {
+        if (one->part) {
+            one = give_part(*one, now) ? loading_.erase(one) : std::next(one);
+            continue;
+        }
         const auto rows = recorder_->rows(one->recording);
         if (!rows && now - one->since < patience) {
             ++one;
@@ -188,7 +216,7 @@ void ScopeRequests::look_for_loaded(Instant now) {
         const auto done = std::move(*one);
         one = loading_.erase(one);  // now: it no longer counts as one that waits
         std::optional<Error> error;
-        if (!rows) error = Error{"recording.slow", done.recording, "the disk has not given it yet", "Ask again; look at that disk."};
+        if (!rows) error = slow(done.recording);
         else if (!*rows) error = rows->error();
         else if (done.asked.signals.empty()) say(done.connection, done.id, "scope", signals_json(***rows));
         else if (auto begun = begin_read(done.connection, done.id, done.asked, ***rows, **rows); !begun) error = begun.error();

@@ -66,6 +66,7 @@ private:
         std::string id, recording;
         Asked asked;
         Instant since{};
+        std::optional<std::uint64_t> part{};  // its file from this byte on, instead of its signals
     };
     struct Read {
         ConnectionId connection = 0;
@@ -83,6 +84,8 @@ private:
     [[nodiscard]] Result<void> begin_read(ConnectionId connection, const std::string& id, const Asked& asked,
                                           const runtime::SignalRows& rows, runtime::FlightRecorder::Rows kept);
     void look_for_loaded(Instant now);
+    /// True: there is an answer, or an error.
+    bool give_part(const Loading& loading, Instant now);
     /// True: its answer is out.
     bool go_on(Read& read, std::size_t& cells);
     void say(ConnectionId connection, const std::string& id, std::string_view key, std::string_view value);

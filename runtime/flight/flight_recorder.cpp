@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <numeric>
 #include <set>
 #include <system_error>
@@ -118,6 +119,57 @@ std::vector<FlightRecorder::Kept> FlightRecorder::kept() const {
     return all;
 }
 
+std::optional<Error> FlightRecorder::why_not(const std::string& name) const {
+    if (std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& w) { return w.kept.name == name; }))
+        return Error{"recording.not_yet", name, "its last seconds are still being recorded", "Ask again in some seconds."};
+    // Only what is known is opened: a name is no path.
+    if (std::none_of(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.name == name; }))
+        return Error{"recording.unknown", name, "there is no recording of this name (any more)", "`recordings` lists those that are kept."};
+    return std::nullopt;
+}
+
+std::optional<Result<FlightRecorder::Part>> FlightRecorder::part(const std::string& name, std::uint64_t from) {
+    const std::scoped_lock lock{mutex_};
+    if (const auto found = std::find_if(parts_.begin(), parts_.end(), [&](const AskedPart& p) { return p.name == name && p.from == from; });
+        found != parts_.end()) {
+        if (!found->part) return std::nullopt;
+        auto part = *std::move(found->part);
+        parts_.erase(found);
+        return part;
+    }
+    if (auto error = why_not(name)) return *std::move(error);
+    parts_.push_front({name, from, std::nullopt});
+    while (parts_.size() > most_parts) parts_.pop_back();
+    return std::nullopt;
+}
+
+void FlightRecorder::read_next_part() {
+    std::string name;
+    std::uint64_t from = 0;
+    {
+        const std::scoped_lock lock{mutex_};
+        const auto asked = std::find_if(parts_.rbegin(), parts_.rend(), [](const AskedPart& p) { return !p.part; });  // the oldest
+        if (asked == parts_.rend()) return;
+        name = asked->name;
+        from = asked->from;
+    }
+    const auto path = fs::path(folder_) / (name + std::string{scope_ending});
+    std::error_code failed;
+    Part part{fs::file_size(path, failed), {}};
+    std::ifstream file{path, std::ios::binary};
+    if (!failed && file && from < part.size) {
+        part.bytes.resize(std::min<std::uint64_t>(part_bytes, part.size - from));
+        file.seekg(static_cast<std::streamoff>(from));
+        file.read(part.bytes.data(), static_cast<std::streamsize>(part.bytes.size()));
+    }
+    auto read = failed || !file
+                    ? Result<Part>{Error{"recording.read", name, "its file cannot be read", "Look into that folder and at that disk."}}
+                    : Result<Part>{std::move(part)};
+    const std::scoped_lock lock{mutex_};
+    for (auto& one : parts_)
+        if (one.name == name && one.from == from && !one.part) one.part = std::move(read);
+}
+
 std::optional<Result<FlightRecorder::Rows>> FlightRecorder::rows(const std::string& name) {
     const std::scoped_lock lock{mutex_};
     if (const auto found = std::find_if(loaded_.begin(), loaded_.end(), [&](const Loaded& l) { return l.name == name; });
@@ -127,11 +179,7 @@ std::optional<Result<FlightRecorder::Rows>> FlightRecorder::rows(const std::stri
         if (!rows) loaded_.erase(found);  // another time it may be readable
         return rows;
     }
-    if (std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& w) { return w.kept.name == name; }))
-        return Error{"recording.not_yet", name, "its last seconds are still being recorded", "Ask again in some seconds."};
-    // Only what is known is opened: a name is no path.
-    if (std::none_of(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.name == name; }))
-        return Error{"recording.unknown", name, "there is no recording of this name (any more)", "`recordings` lists those that are kept."};
+    if (auto error = why_not(name)) return *std::move(error);
     loaded_.push_front({name, std::nullopt});
     while (loaded_.size() > most_loaded) loaded_.pop_back();
     return std::nullopt;
@@ -222,6 +270,7 @@ Result<FlightRecorder::File> FlightRecorder::write_next(bool all) {
 
 Result<FlightRecorder::File> FlightRecorder::work() {
     load_next();
+    read_next_part();
     return write_next(false);
 }
 

@@ -30,6 +30,7 @@ public:
     static constexpr Duration together = std::chrono::milliseconds{500};  ///< alarms that share a recording
     static constexpr std::size_t most_waiting = 16;  ///< recordings that are not written yet; what comes then joins the last
     static constexpr std::size_t most_loaded = 2;    ///< in memory, for who looks at them
+    static constexpr std::size_t part_bytes = 262'144, most_parts = 16;  ///< of files, for who copies them
 
     /// Of the machine's `recording`; `folder` is made, and what a killed process left unfinished in it goes. `epoch`: calendar time at
     /// machine time 0. `machine` outlives it. Errors: recording.directory.
@@ -53,6 +54,13 @@ public:
     /// Has it loaded beside; ask again until there is something. Errors: recording.unknown, recording.not_yet (it is still being recorded), those of
     /// read_scope_file().
     [[nodiscard]] std::optional<Result<Rows>> rows(const std::string& name);
+
+    struct Part {
+        std::uint64_t size = 0;  ///< of the whole file
+        std::string bytes;       ///< part_bytes of it at most
+    };
+    /// The file itself from a byte on, for who copies it. Read beside, as rows(). Errors: recording.unknown, recording.not_yet, recording.read.
+    [[nodiscard]] std::optional<Result<Part>> part(const std::string& name, std::uint64_t from);
 
     // --- a thread that may wait ------------------------------------------------------------------------------------------------------
     struct File {
@@ -83,13 +91,20 @@ private:
         std::string name;
         std::optional<Result<Rows>> rows;  // nullopt: asked for
     };
+    struct AskedPart {
+        std::string name;
+        std::uint64_t from = 0;
+        std::optional<Result<Part>> part;  // nullopt: asked for
+    };
     FlightRecorder(const Machine& machine, std::string folder, Duration epoch);
     void find_kept();
+    [[nodiscard]] std::optional<Error> why_not(const std::string& name) const;  // under the mutex
     [[nodiscard]] bool notice(const AlarmFact& fact, Reaction reaction, Instant since);
     [[nodiscard]] std::string name_for(Instant since, std::string_view alarm) const;
     [[nodiscard]] Result<File> write_next(bool all);
     [[nodiscard]] Result<File> write(Waiting& waiting) const;
     void load_next();
+    void read_next_part();
 
     const Machine& machine_;
     const RecordingConfig& config_;
@@ -102,6 +117,7 @@ private:
     std::vector<Kept> kept_;                              // oldest first
     std::deque<std::pair<Shown, std::string>> by_alarm_;  // the newest
     std::deque<Loaded> loaded_;
+    std::deque<AskedPart> parts_;
 };
 
 }  // namespace taktwerk::runtime

@@ -1,5 +1,5 @@
 #pragma once
-// What a page makes of the text of an answer: the doubles in it.
+// What a page makes of the text of an answer: the bytes, the doubles in it.
 
 #include <cstring>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace taktwerk::hmi {
 
-inline std::vector<double> numbers_of(const std::string& text) {
+inline std::string bytes_of(const std::string& text) {
     constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string bytes;
     unsigned bits = 0, held = 0;
@@ -21,6 +21,11 @@ inline std::vector<double> numbers_of(const std::string& text) {
         held -= 8;
         bytes += static_cast<char>(bits >> held & 0xFF);
     }
+    return bytes;
+}
+
+inline std::vector<double> numbers_of(const std::string& text) {
+    const auto bytes = bytes_of(text);
     std::vector<double> out(bytes.size() / sizeof(double));
     std::memcpy(out.data(), bytes.data(), out.size() * sizeof(double));
     return out;

@@ -3,6 +3,8 @@
 
 #include <bit>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -112,7 +114,37 @@ TEST_F(Recordings, AnAlarmNamesItsRecordingAndItIsReadAsTheMachineWas) {
     EXPECT_EQ(errors.at(alarm_cycle - from), 0x3130);
 }
 
+// Whoever copies a recording has the file that lies on the disk, byte by byte.
+TEST_F(Recordings, ItsFileIsGivenInParts) {
+    run(800);
+    m.world.drive("x")->raise(0x3130);
+    run(20);
+    const std::string name = ask({{"cmd", "state"}})["state"]["alarms"][0]["recording"];
+    EXPECT_EQ(ask({{"cmd", "recording_part"}, {"recording", name}})["error"]["code"], "recording.not_yet");
+    run(400);
+    std::ifstream file{folder + "/" + name + ".twscope", std::ios::binary};
+    const std::string on_disk{std::istreambuf_iterator<char>{file}, {}};
+    ASSERT_FALSE(on_disk.empty());
+
+    std::string copied;
+    while (copied.size() < on_disk.size()) {
+        const auto part = ask({{"cmd", "recording_part"}, {"recording", name}, {"from", copied.size()}});
+        ASSERT_EQ(part["ok"], true) << part;
+        EXPECT_EQ(part["size"], on_disk.size());
+        EXPECT_EQ(part["from"], copied.size());
+        const auto bytes = bytes_of(part["data"]);
+        ASSERT_FALSE(bytes.empty());
+        EXPECT_LE(bytes.size(), runtime::FlightRecorder::part_bytes);
+        copied += bytes;
+    }
+    EXPECT_EQ(copied, on_disk);
+    const auto behind = ask({{"cmd", "recording_part"}, {"recording", name}, {"from", on_disk.size()}});
+    EXPECT_EQ(behind["data"], "");
+}
+
 TEST_F(Recordings, WhatThereIsNotIsSaid) {
+    EXPECT_EQ(ask({{"cmd", "recording_part"}, {"recording", "../../etc/passwd"}})["error"]["code"], "recording.unknown");
+    EXPECT_EQ(ask({{"cmd", "recording_part"}})["error"]["code"], "request.missing_key");
     EXPECT_EQ(ask({{"cmd", "recording_signals"}, {"recording", "../../etc/passwd"}})["error"]["code"], "recording.unknown");
     EXPECT_EQ(ask({{"cmd", "recording_read"}, {"recording", "none"}, {"signals", {"x.state"}}})["error"]["code"], "recording.unknown");
     EXPECT_EQ(ask({{"cmd", "recording_read"}, {"recording", "none"}})["error"]["code"], "request.missing_key");

@@ -1,6 +1,7 @@
 // An alarm that stops something: it stands on top, in both languages, with what was recorded around it; afterwards it is in the history.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Cell, pause, unhurried, until } from './cell';
 
@@ -42,6 +43,19 @@ test('one click opens what was recorded around it', { timeout: 90_000 }, async (
     await link.click();
     assert.ok((await cell.page.evaluate(() => location.hash)).startsWith('#scope/recording/'));
     await cell.page.locator('.page.scope canvas').first().waitFor({ timeout: 10_000 });
+});
+
+test('its file is saved as it lies on the machine\'s disk', { timeout: 90_000 }, async () => {
+    await cell.look('#system');
+    const save = cell.page.locator('[data-do="copy_recording"]').first();
+    await until('it may be saved', () => save.isEnabled());
+    const kept = cell.page.waitForEvent('download');
+    await save.click();
+    const download = await kept, name = download.suggestedFilename();
+    assert.match(name, /^demo-.*\.twscope$/);
+    const on_disk = readFileSync(join(cell.folder, 'recordings', name));
+    assert.ok(on_disk.length > 0);
+    assert.ok(readFileSync(await download.path()).equals(on_disk));
 });
 
 test('afterwards it is in the history: found by its text and place, handed out as CSV', { timeout: 90_000 }, async () => {

@@ -1,6 +1,7 @@
 // Why an axis does not move, its ruler, its lamps, its following error: pure, so each case is one line.
 import assert from 'node:assert/strict';
 import test from 'node:test';
+import { is_old } from '@page/axis/is_old';
 import { place_in_window } from '@page/axis/values';
 import { range_of, tick_distance } from '@page/axis/ruler';
 import { why, why_not_by_hand } from '@page/axis/why';
@@ -27,6 +28,7 @@ const reasons: [string, Partial<AxisState>, Partial<MachineState>, string][] = [
     ['nothing is wrong', {}, {}, say('why_idle')],
     ['switched off in the file', { disabled: true, powered: false }, { emergency_stop: true }, say('why_disabled')],
     ['emergency stop', { powered: false, online: false }, { emergency_stop: true }, say('why_emergency')],
+    ['an emergency stop that nobody pressed', { powered: false, online: false }, { emergency_stop: true, emergency_stop_unread: true }, say('why_emergency_unread')],
     ['no answer on the bus', { powered: false, online: false, state: 'ErrorStop' }, {}, say('why_offline')],
     ['an error', { state: 'ErrorStop' }, {}, say('why_error')],
     ['held by MC_Stop', { held_by_stop: true, block: 'p.stop' }, {}, say('why_held', { block: ' (p.stop)' })],
@@ -42,6 +44,24 @@ for (const [name, of_axis, of_machine, first] of reasons)
 test('an error names its alarms, and only those of this axis', () => {
     const sentences = why({ ...axis, state: 'ErrorStop' }, { ...machine, alarms: [alarm, { ...alarm, source: 'axis y', english: 'another' }, { ...alarm, standing: false, english: 'gone' }] }).sentences;
     assert.deepEqual(sentences, [say('why_error'), 'a phase is lost']);
+});
+
+test('an error says what to do, also when its alarm is gone', () => {
+    const stopped = { ...axis, state: 'ErrorStop', error: 0x300f, error_name: 'emergency_stop', error_cause: 'The emergency stop was pressed or its circuit is open', error_remedy: 'Remove the danger, release the emergency stop, then reset' };
+    assert.deepEqual(why(stopped, machine).sentences, [say('why_error'), stopped.error_cause, stopped.error_remedy]);
+    assert.deepEqual(why(stopped, { ...machine, alarms: [{ ...alarm, remedy: 'check the mains' }] }).sentences, [say('why_error'), 'a phase is lost', 'check the mains']);
+});
+
+test('a direction that its program forbids is said, while it has power', () => {
+    assert.ok(why({ ...axis, enable_positive: false, enable_negative: true }, machine).sentences.includes(say('why_not_positive')));
+    assert.ok(why({ ...axis, enable_positive: true, enable_negative: false }, machine).sentences.includes(say('why_not_negative')));
+    assert.ok(!why({ ...axis, powered: false, enable_positive: false, enable_negative: false }, machine).sentences.includes(say('why_not_positive')));
+});
+
+test('what a drive said last that does not answer is not of now', () => {
+    assert.equal(is_old({ ...axis, online: false }), true);
+    assert.equal(is_old(axis), false);
+    assert.equal(is_old({ ...axis, online: false, disabled: true }), false);
 });
 
 test('a moving axis says by what, for whom, and what limits it', () => {

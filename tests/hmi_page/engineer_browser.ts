@@ -165,3 +165,39 @@ test('the bus is drawn in the order of its cable', { timeout: 180_000 }, async (
     await until('its ports are told', async () => (await cell.page.locator('[data-part="slave"] tbody tr').count()) === 4);
     assert.match((await cell.page.locator('[data-part="slave"]').textContent()) ?? '', /x_drive/);
 });
+
+test('an emergency stop that was released leaves its words until somebody resets', { timeout: 180_000 }, async () => {
+    await insist('x has power', async () => {
+        await cell.machine.ask({ cmd: 'reset' });
+        await cell.machine.ask({ cmd: 'enable', axis: 'x' });
+    }, async () => (await cell.axis('x')).powered);
+    await cell.machine.ask({ cmd: 'simulate', line: 'input estop_ok 0' });
+    await until('x is stopped', async () => (await cell.axis('x')).state === 'ErrorStop');
+    await cell.machine.ask({ cmd: 'simulate', line: 'input estop_ok 1' });
+    await until('it is released', async () => !(await cell.machine.state())['emergency_stop']);
+    await cell.look('#axis/x');
+    await until('why, and what to do', async () => /emergency stop was pressed[^]*release the emergency stop/.test((await cell.page.locator('[data-value="why"]').textContent()) ?? ''));
+    assert.match((await cell.page.locator('.strip').textContent()) ?? '', /Emergency stop.*not acknowledged/);
+    assert.equal(await cell.page.locator('[data-value="error"]').textContent(), 'emergency_stop');
+    await cell.machine.ask({ cmd: 'reset' });
+});
+
+test('of a drive that is cut off nothing old is shown as if it were of now', { timeout: 180_000 }, async () => {
+    await cell.look('#axis/y');
+    const old = cell.page.locator('[data-value="last_known"]');
+    assert.ok(await old.isHidden());
+    assert.notEqual(await cell.page.locator('[data-value="drive_state"]').textContent(), '–');
+    await cell.machine.ask({ cmd: 'simulate', line: 'unplug y_drive' });
+    await old.waitFor();
+    for (const value of ['head_actual_velocity', 'head_following_error', 'actual_torque', 'drive_state']) assert.equal(await cell.page.locator(`[data-value="${value}"]`).textContent(), '–', value);
+    // The input of the emergency stop is behind the same cable: nobody pressed it.
+    await until('nobody pressed the emergency stop', async () => /cannot be read/.test((await cell.page.locator('.banner.emergency').textContent()) ?? ''));
+    await until('why', async () => /cannot be read[^]*does not answer/.test((await cell.page.locator('[data-value="why"]').textContent()) ?? ''));
+    await cell.look('#axis/y/drive');
+    await until('no bit of its status word is lit', async () => (await cell.page.locator('.bits [data-tone="good"], .bits [data-tone="bad"]').count()) === 0);
+    assert.equal(await cell.page.locator('[data-value="status_word"]').textContent(), '–');
+    await cell.look('#overview');
+    await until('the overview marks it', async () => /⚠/.test((await cell.page.locator('tr[data-axis="y"] [data-value="position"]').textContent()) ?? ''));
+    assert.doesNotMatch((await cell.page.locator('tr[data-axis="x"] [data-value="position"]').textContent()) ?? '', /⚠/);
+    await cell.machine.ask({ cmd: 'simulate', line: 'plug y_drive' });
+});

@@ -4,6 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
+import { in_words } from '@page/alarm_words';
 import { in_chinese, said, sentences } from '@page/sentences/said';
 import { choose_language } from '@page/texts';
 
@@ -53,12 +54,25 @@ for (const [file, least] of [['runtime/machine/alarm_words.cpp', 8], ['hmi_bridg
         for (const sentence of found) whole(/^[ ;,]/.test(sentence) ? `nobody has control${sentence}` : sentence.replace('{}{}', '; else: x').replace(/: $/, ': x').replace(/\{[^}]*\}/g, 'x'));
     });
 
+test('why nothing new comes', () => {
+    const found = [...read('hmi_bridge/web/server/feed.hpp').matchAll(/why_ = "([^"]+)"/g)].map((one) => one[1] ?? '');
+    assert.ok(found.length >= 3);
+    found.forEach(whole);
+});
+
 test('sentences that are made of others are Chinese in all their parts', () => {
     assert.equal(in_chinese('MC_MoveAbsolute of the operator was ended: the axis went into ErrorStop (drive_fault)'), '操作员的 MC_MoveAbsolute 被终止：轴进入故障停止（drive_fault）');
     assert.equal(in_chinese('once its cause is gone: press reset or `taktwerk reset y`, in a program MC_Reset'), '原因消失后：对 y 按“复位”，在程序中用 MC_Reset');
     assert.equal(in_chinese('Home the axis. Then MC_Reset, or `taktwerk reset`.'), '回零。然后复位。');
     assert.equal(in_chinese('It still coasts, or a load, a master or a hand turns it, faster than a tenth of the axis\' velocity (12.5 mm/s): power would hold it with a jolt'),
         '电机仍在滑行，或被负载、主轴或人手带动，速度超过轴速度的十分之一（12.5 mm/s）：此时接通动力会产生冲击');
+});
+
+test('where on the bus stands behind the text of an alarm', () => {
+    choose_language('zh');
+    const text = in_words({ english: '3 slaves ...', chinese: "同一电缆后的 3 个从站失去应答:between slave 0 'x' (sv33-e) port 1 and slave 1 'y' (sv33-e)" });
+    choose_language('en');
+    assert.equal(text, "同一电缆后的 3 个从站失去应答:在 从站 0 'x' (sv33-e) 端口 1 与 从站 1 'y' (sv33-e) 之间");
 });
 
 test('what nobody knows stays as it came, and says that it is English', () => {

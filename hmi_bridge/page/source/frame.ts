@@ -4,6 +4,7 @@ import { in_words, stops, where } from './alarm_words';
 import { Desk } from './desk';
 import { duration } from './numbers';
 import { Entry, pages } from './pages/list';
+import { said } from './sentences/said';
 import { MachineState } from './state';
 import { current_language, say, word } from './texts';
 import { element, mark, write } from './view';
@@ -90,7 +91,7 @@ export class Frame {
         const desk = this.desk_, link = desk.link;
         const simulated = element('div', { class: 'banner simulated', hidden: true }, say('simulated_banner'));
         const stale = element('div', { class: 'banner stale', role: 'alert', hidden: true });
-        const emergency = element('div', { class: 'banner emergency', role: 'alert', hidden: true }, `⚠ ${say('emergency_stop')}`);
+        const emergency = element('div', { class: 'banner emergency', role: 'alert', hidden: true });
         const forced_text = element('a', { href: '#io' });
         const release = desk.button('release_forces', () => ({ cmd: 'release_forces' }), 'small');
         const forced = element('div', { class: 'banner forced', role: 'alert', hidden: true }, forced_text, release);
@@ -99,6 +100,7 @@ export class Frame {
         const write_state = (state: MachineState | undefined): void => {
             simulated.hidden = !state?.simulated;
             emergency.hidden = !state?.emergency_stop;
+            write(emergency, `⚠ ${say(state?.emergency_stop_unread ? 'emergency_unread' : 'emergency_stop')}`);
             const points = state?.forced ?? [];
             forced.hidden = points.length === 0;
             if (points.length > 0) {
@@ -106,12 +108,12 @@ export class Frame {
                 write(forced_text, `⚠ ${say('forced_banner', { count: String(points.length), names })}`);
                 desk.permit(release, 'release_forces');
             }
-            const standing = standing_alarms(state), first = standing.find(stops) ?? standing[0];
+            const listed = listed_alarms(state), first = listed.find((alarm) => alarm.standing && stops(alarm)) ?? listed.find((alarm) => alarm.standing) ?? listed[0];
             strip.hidden = !first;
             if (first) {
-                mark(strip, 'data-tone', stops(first) ? 'bad' : 'warn');
-                write(strip_text, `⚠ ${where(first.source)}: ${in_words(first)}`);
-                write(strip_more, standing.length > 1 ? say('more_alarms', { count: String(standing.length) }) : '');
+                mark(strip, 'data-tone', !first.standing ? 'idle' : stops(first) ? 'bad' : 'warn');
+                write(strip_text, `${first.standing ? '⚠' : '○'} ${where(first.source)}: ${in_words(first)}${first.standing ? '' : ` – ${say('gone')}`}`);
+                write(strip_more, listed.length > 1 ? say('more_alarms', { count: String(listed.length) }) : '');
             }
         };
         return {
@@ -120,7 +122,7 @@ export class Frame {
                 stale.hidden = !link.stale;
                 if (link.stale) {
                     const age = duration((performance.now() - link.fresh_at) / 1000);
-                    const why = link.opened ? link.why_stale : say('no_connection');
+                    const why = link.opened ? said(link.why_stale).text : say('no_connection');
                     if (link.login && link.role === '') write(stale, say('login_first'));
                     else write(stale, '⚠ ' + (link.fresh_at === 0 ? say('never_banner') : say('stale_banner', { time: link.fresh_since.toLocaleTimeString('en-GB'), age })) + (why ? ` (${why})` : ''));
                 }
@@ -145,19 +147,20 @@ export class Frame {
             root: element('nav', { class: 'side', 'aria-label': say('pages') }, own, ...tabs),
             update: () => {
                 own_tabs(hands.route().name === 'view');
-                const entry = hands.route(), standing = standing_alarms(this.desk_.link.state).length;
+                const entry = hands.route(), listed = listed_alarms(this.desk_.link.state).length;
                 offered.forEach((offer, i) => {
                     const tab = tabs[i];
                     if (!tab) return;
                     tab.hidden = offer.offered?.(this.desk_) === false;
                     mark(tab, 'aria-current', offer.name === (entry.under ?? entry.name) ? 'page' : false);
-                    if (offer.name === 'alarms') write(tab, say('alarms') + (standing > 0 ? ` (${standing})` : ''));
+                    if (offer.name === 'alarms') write(tab, say('alarms') + (listed > 0 ? ` (${listed})` : ''));
                 });
             },
         };
     }
 }
 
-const standing_alarms = (state: MachineState | undefined) => state?.alarms.filter((alarm) => alarm.standing) ?? [];
+/** Those that stand, and those that are gone and wait for a person. */
+const listed_alarms = (state: MachineState | undefined) => state?.alarms.filter((alarm) => alarm.standing || !alarm.acknowledged) ?? [];
 
 export const html_language = (): string => (current_language() === 'zh' ? 'zh-CN' : 'en');

@@ -23,6 +23,10 @@ export interface AxisState {
     resetting: boolean;
     warning: boolean;
     error: number;
+    /** What stopped it, where a table has it; in English. */
+    error_name?: string;
+    error_cause?: string;
+    error_remedy?: string;
     drive_error: number;
     actual_position: Real;
     actual_velocity: Real;
@@ -51,6 +55,9 @@ export interface AxisState {
     following_error_min?: Real;
     following_error_max?: Real;
     operators_override?: Real;
+    /** Limits and speeds as they hold now; those of the layout are the machine file's. */
+    position_min?: Real | null;
+    position_max?: Real | null;
     brake?: string;
     master?: string;
 }
@@ -99,6 +106,8 @@ export interface MachineState {
     phase: string;
     mode: string;
     emergency_stop: boolean;
+    /** It counts as pressed because its input cannot be read. */
+    emergency_stop_unread?: boolean;
     simulated: boolean;
     statistics: Record<string, number>;
     bus: Record<string, number | string>;

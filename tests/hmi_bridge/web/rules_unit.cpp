@@ -74,7 +74,8 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
                                                       {"scope_disarm", "yyyy"},
                                                       {"recordings", "yyyy"},
                                                       {"recording_signals", "yyyy"},
-                                                      {"recording_read", "yyyy"}};
+                                                      {"recording_read", "yyyy"},
+                                                      {"recording_part", "nyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);

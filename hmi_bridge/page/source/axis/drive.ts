@@ -7,6 +7,7 @@ import { AxisLayout, AxisState, MachineState } from '../state';
 import { Key, say, word } from '../texts';
 import { element, write } from '../view';
 import { DriveParameters } from './drive_parameters';
+import { is_old } from './is_old';
 import { axis_tabs } from './tabs';
 
 /** CiA 402-2, table of the status word, from bit 0; what is left out belongs to a mode or the vendor. */
@@ -28,15 +29,16 @@ export function drive_page(desk: Desk, layout: AxisLayout): Page {
         status.set('drive', layout.drive || '–');
         status.set('profile', layout.profile || '–');
         status.set('drive_place', String(layout.drive_axis));
-        status.set('drive_state', word('drive', axis.drive_state));
-        status.set('drive_mode', word('drivemode', axis.drive_mode));
-        status.set('status_word', hex(axis.status_word));
-        status.set('drive_error', axis.drive_error === 0 ? say('none_of_these') : hex(axis.drive_error));
+        const old = is_old(axis);
+        status.set('drive_state', old ? say('last_known') : word('drive', axis.drive_state));
+        status.set('drive_mode', old ? '–' : word('drivemode', axis.drive_mode));
+        status.set('status_word', old ? '–' : hex(axis.status_word));
+        status.set('drive_error', old ? '–' : axis.drive_error === 0 ? say('none_of_these') : hex(axis.drive_error));
         if (axis.brake && axis.brake !== 'not_controlled') status.set('brake', word('brake', axis.brake));
         status_bits.forEach(([bit, key], i) => {
             const item = bits[i];
             if (!item) return;
-            const on = (axis.status_word & (1 << bit)) !== 0;
+            const on = !old && (axis.status_word & (1 << bit)) !== 0;
             write_lamp(item, on, `${bit} ${say(key)}`, bad_bits.includes(bit) ? 'bad' : 'good');
         });
     };

@@ -28,7 +28,9 @@ function buttons(desk: Desk, name: string, axis_now: () => AxisState | undefined
             const reason = why_not_by_hand(axis, machine);
             const resting = axis.powered && axis.state === 'Standstill';
             write(power, say(axis.powered ? 'power_off' : 'power_on'));
-            mark(power, 'class', axis.powered ? '' : 'primary');
+            const stopped = axis.state === 'ErrorStop';
+            mark(power, 'class', axis.powered || stopped ? '' : 'primary');
+            mark(reset, 'class', stopped ? 'primary' : '');
             desk.permit(power, axis.powered ? 'disable' : 'enable', axis.powered || reason === '', reason);
             desk.permit(home, 'home', reason === '' && resting, reason || say(axis.powered ? 'needs_standstill' : 'needs_power'));
             desk.permit(reset, 'reset', !axis.disabled, reason);
@@ -65,8 +67,9 @@ function moving(desk: Desk, name: string, unit: string, slow: () => number, axis
     const size = element('select', { 'aria-label': say('step_size'), 'data-input': 'step' }, ...step_sizes.map((s) => element('option', { value: String(s) }, `${s} ${unit}`)));
     size.value = '1';
     const move = (to: number, velocity: number): void => {
-        const low = value(layout?.position_min), high = value(layout?.position_max);
-        if (axis_now()?.homed && (to < low || to > high)) desk.tell('refused', say('outside_limits', { text: fixed(to), low: fixed(low), high: fixed(high) }));
+        const axis = axis_now(), now = axis?.position_min !== undefined;
+        const low = value(now ? axis?.position_min : layout?.position_min), high = value(now ? axis?.position_max : layout?.position_max);
+        if (axis?.homed && (to < low || to > high)) desk.tell('refused', say('outside_limits', { text: fixed(to), low: fixed(low), high: fixed(high) }));
         else void desk.give({ cmd: 'move', axis: name, position: to, velocity });
     };
     const step = (sense: number) => () => move(value(axis_now()?.set_position) + sense * Number(size.value), slow());

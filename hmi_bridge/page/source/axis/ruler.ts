@@ -4,7 +4,7 @@ import { AxisLayout, AxisState, value } from '../state';
 import { drawing, mark } from '../view';
 
 /** What the ruler shows: the software limits and a little beyond; without limits, what lies around the axis. */
-export function range_of(layout: AxisLayout, position: number): { from: number; to: number; low: number; high: number } {
+export function range_of(layout: Pick<AxisLayout, 'position_min' | 'position_max' | 'modulo'>, position: number): { from: number; to: number; low: number; high: number } {
     const low = value(layout.position_min), high = value(layout.position_max), modulo = value(layout.modulo);
     if (modulo > 0) return { from: 0, to: modulo, low: -Infinity, high: Infinity };
     if (Number.isFinite(low) && Number.isFinite(high) && high > low) {
@@ -37,7 +37,9 @@ export class Ruler {
 
     update(layout: AxisLayout, axis: AxisState): void {
         const position = value(axis.actual_position), target = value(axis.target_position);
-        const { from, to, low, high } = range_of(layout, position);
+        // As they hold now: a program may have changed those of the machine file.
+        const limits = axis.position_min === undefined ? layout : { position_min: axis.position_min, position_max: axis.position_max ?? null, modulo: layout.modulo ?? 0 };
+        const { from, to, low, high } = range_of(limits, position);
         const part = (at: number) => `${(Math.min(1, Math.max(0, (at - from) / (to - from))) * 100).toFixed(3)}%`;
         const drawn = [from, to, low, high, axis.homed].join();
         if (drawn !== this.drawn_) {
@@ -53,8 +55,8 @@ export class Ruler {
                     drawing('text', { x: part(at), y: '78', 'text-anchor': 'middle' }, String(Number(at.toPrecision(10))).replace('-', '−')));
             for (const limit of [low, high])
                 if (Number.isFinite(limit))
-                    this.scale_.append(drawing('line', { class: 'ruler-limit', x1: part(limit), x2: part(limit), y1: '30', y2: '60' }),
-                        drawing('text', { class: 'ruler-limit-text', x: part(limit), y: '25', 'text-anchor': 'middle' }, fixed(limit, 0)));
+                    this.scale_.append(drawing('line', { class: 'ruler-limit', x1: part(limit), x2: part(limit), y1: '12', y2: '60' }),
+                        drawing('text', { class: 'ruler-limit-text', x: part(limit), y: '9', 'text-anchor': 'middle' }, fixed(limit, 0)));
         }
         mark(this.carriage_, 'x', part(position));
         mark(this.carriage_, 'visibility', Number.isFinite(position) ? 'visible' : 'hidden');

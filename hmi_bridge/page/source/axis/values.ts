@@ -4,6 +4,7 @@ import { fixed, hex } from '../numbers';
 import { AxisState, value } from '../state';
 import { say, word } from '../texts';
 import { element, mark, write } from '../view';
+import { is_old } from './is_old';
 
 /** Where a following error stands between the ends of its window: 0 to 1. */
 export const place_in_window = (error: number, window: number): number => (window > 0 && Number.isFinite(window) ? Math.min(1, Math.max(0, (error / window + 1) / 2)) : 0.5);
@@ -43,19 +44,20 @@ export class AxisValues {
     private readonly following_: FollowingError;
     readonly root: HTMLElement;
 
-    constructor(desk: Desk, name: string, private readonly unit_: string) {
+    constructor(desk: Desk, name: string, private readonly unit_: string, private readonly modulo_: boolean) {
         this.following_ = new FollowingError(desk, name, unit_);
         this.right_.root.classList.add('words');
         this.root = panel('values', element('div', { class: 'two' }, this.left_.root, this.right_.root), this.following_.root);
     }
     update(axis: AxisState): void {
+        const old = is_old(axis), sign = (on: boolean | undefined): string => (on === undefined ? '–' : on ? '●' : '○');
         const unit = this.unit_, left = this.left_, right = this.right_;
         left.set('target_position', axis.has_job ? `${fixed(axis.target_position)} ${unit}` : '–');
         left.set('distance_to_go', axis.has_job ? `${fixed(value(axis.target_position) - value(axis.set_position))} ${unit}` : '–');
         left.set('set_velocity', `${fixed(axis.set_velocity)} ${unit}/s`);
         left.set('set_acceleration', `${fixed(axis.set_acceleration, 1)} ${unit}/s²`);
         left.set('set_jerk', `${fixed(axis.set_jerk, 0)} ${unit}/s³`);
-        left.set('actual_torque', `${fixed(value(axis.actual_torque) * 100, 1)} %`);
+        left.set('actual_torque', old ? '–' : `${fixed(value(axis.actual_torque) * 100, 1)} %`);
         left.set('following_window', `± ${fixed(axis.following_window)} ${unit}`);
         left.set('override', `${fixed(value(axis.override) * 100, 0)} %`);
         right.set('owner', word('owner', axis.owner));
@@ -63,9 +65,12 @@ export class AxisValues {
         right.set('block', axis.block || '–');
         right.set('queued', String(axis.queued));
         right.set('limiter', word('limiter', axis.velocity_limiter));
-        right.set('drive_state', word('drive', axis.drive_state));
-        right.set('drive_error', axis.drive_error === 0 ? say('none_of_these') : hex(axis.drive_error));
-        right.set('error', axis.error === 0 ? say('none_of_these') : String(axis.error));
+        right.set('enables', [axis.enable, axis.enable_positive, axis.enable_negative].map(sign).join(' '));
+        right.set('drive_state', old ? '–' : word('drive', axis.drive_state));
+        right.set('drive_error', old ? '–' : axis.drive_error === 0 ? say('none_of_these') : hex(axis.drive_error));
+        right.set('error', axis.error === 0 ? say('none_of_these') : axis.error_name ?? hex(axis.error));
+        if (axis.master) right.set('follows', axis.master);
+        if (this.modulo_) left.set('turns', String(axis.turns));
         this.following_.update(axis);
     }
 }

@@ -86,7 +86,7 @@ export class BusTree {
             write(row.name, slave.name || say('unnamed'));
             write(row.device, slave.device || (slave.configured ? '' : say('not_configured')));
             const ok = slave.state === 'OP' && !slave.al_error;
-            write(row.state, `${slave.position === null ? '✕' : ok ? '●' : '⚠'} ${slave.position === null ? say(slave.away ? 'slave_away' : 'slave_missing') : slave.state}`);
+            write(row.state, `${slave.position === null ? '✕' : ok ? '●' : '⚠'} ${slave.position === null ? say(slave.away ? 'slave_away' : 'slave_missing') : slave.state === 'unknown' ? say('state_unknown') : slave.state}`);
             mark(row.state, 'data-tone', slave.position === null ? (slave.away ? 'idle' : 'bad') : ok ? 'good' : 'warn');
             const said = [slave.al_status_code ? slave.al_status_text : '', slave.trouble ?? '', slave.fresh === false && slave.position !== null ? say('aged', { count: String(slave.age ?? 0) }) : '',
                 ...(slave.ports ?? []).map((port, i) => (errors_of(port) > 0 ? say('port_errors', { port: String(i), count: String(errors_of(port)) }) : ''))].filter((text) => text !== '');

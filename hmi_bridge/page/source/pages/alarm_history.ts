@@ -1,5 +1,5 @@
 // What stood before, also before a restart: filtered by the machine, newest first; one click opens what was recorded around it.
-import { where } from '../alarm_words';
+import { in_words, where } from '../alarm_words';
 import { Desk, Page } from '../desk';
 import { Inquiry } from '../inquiry';
 import { Request } from '../link';
@@ -7,7 +7,7 @@ import { duration } from '../numbers';
 import { csv, file_time, local_time, save_file } from '../save';
 import { said, said_element } from '../sentences/said';
 import { MachineState } from '../state';
-import { current_language, Key, say, word } from '../texts';
+import { Key, say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
 import { alarm_tabs, recording_link } from './alarms';
 
@@ -34,7 +34,7 @@ const most_exported = 20_000;
 const refresh_ms = 5000;
 const periods: [Key, number][] = [['period_all', 0], ['period_hour', 3600], ['period_day', 86_400], ['period_week', 7 * 86_400], ['period_month', 30 * 86_400]];
 
-export const in_language = (alarm: PastAlarm): string => (current_language() === 'zh' && alarm.chinese ? alarm.chinese : alarm.english);
+export const in_language = (alarm: PastAlarm): string => in_words(alarm);
 
 /** Where an alarm may stand, as the machine says it. */
 const sources = ({ link: { layout } }: Desk): string[] => ['machine', 'bus', ...(layout?.axes ?? []).map((axis) => `axis ${axis.name}`), ...(layout?.slaves ?? []).map((slave) => `slave '${slave}'`),

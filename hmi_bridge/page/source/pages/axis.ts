@@ -7,7 +7,7 @@ import { AxisValues } from '../axis/values';
 import { why } from '../axis/why';
 import { Desk, Page } from '../desk';
 import { write_said } from '../sentences/said';
-import { MachineState } from '../state';
+import { MachineState, value } from '../state';
 import { say } from '../texts';
 import { element, write } from '../view';
 
@@ -18,7 +18,7 @@ export function axis_page(desk: Desk, [wanted = '', part = '']: readonly string[
     if (!layout) return { root: element('div', { class: 'page axis' }, element('p', { class: 'hint' }, say('no_axes'))), update: () => undefined };
     if (part === 'drive') return drive_page(desk, layout);
 
-    const head = new AxisHead(desk, layout), values = new AxisValues(desk, name, layout.unit), hand = hands(desk, name);
+    const head = new AxisHead(desk, layout), values = new AxisValues(desk, name, layout.unit, value(layout.modulo) > 0), hand = hands(desk, name);
     const why_title = element('h2'), why_text = element('ul', { class: 'why', 'data-value': 'why' });
     const refusal = element('span'), refused = element('span', { 'data-value': 'last_refusal' });
     const root = element('div', { class: 'page axis' }, axis_tabs(desk, name, 'hand'), head.root,

@@ -1,5 +1,6 @@
 // All axes at a glance, a row each; programs; whether the cycle keeps time.
 import { in_words, key_of, stops, where } from '../alarm_words';
+import { is_old } from '../axis/is_old';
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
 import { fixed, microseconds } from '../numbers';
 import { said_element } from '../sentences/said';
@@ -23,8 +24,11 @@ export function overview(desk: Desk): Page {
         return { root, ...made, travel, carriage };
     }, (row, axis) => {
         write_state(row.state, axis, word('axis', axis.state));
-        write(row.position, `${fixed(axis.actual_position)} ${axis.unit}`);
-        write(row.velocity, `${fixed(axis.actual_velocity)} ${axis.unit}/s`);
+        const old = is_old(axis);
+        write(row.position, `${old ? '⚠ ' : ''}${fixed(axis.actual_position)} ${axis.unit}`);
+        mark(row.position, 'data-old', old);
+        mark(row.position, 'title', old && say('last_known'));
+        write(row.velocity, old ? '–' : `${fixed(axis.actual_velocity)} ${axis.unit}/s`);
         const part = part_of_travel(desk.axis_layout(axis.name), axis);
         row.travel.hidden = Number.isNaN(part);
         row.carriage.style.left = `${(part * 100).toFixed(1)}%`;
@@ -46,7 +50,7 @@ export function overview(desk: Desk): Page {
         update(state: MachineState) {
             axes.update(state.axes);
             programs.update(state);
-            desk.permit(power, 'enable', !state.emergency_stop);
+            desk.permit(power, 'enable', !state.emergency_stop, say('why_emergency'));
             desk.permit(no_power, 'disable');
             desk.permit(reset, 'reset');
             write_cycle(health, state, desk);
@@ -123,10 +127,11 @@ export function program_rows(desk: Desk): Page {
     }, (row, program) => {
         write(row.state, `${program.state === 'running' ? '▶' : program.state === 'fault' ? '⚠' : '◼'} ${word('program', program.state)}`);
         row.state.dataset['tone'] = program.state === 'running' ? 'good' : program.state === 'fault' ? 'bad' : 'idle';
-        const mode = desk.link.state?.mode;
-        desk.permit(row.start, 'program_start', mode === 'automatic' && program.state !== 'fault' && !desk.link.state?.emergency_stop);
-        desk.permit(row.stop, 'program_stop', program.state === 'running');
-        desk.permit(row.reset, 'program_reset', program.state !== 'running');
+        const now = desk.link.state;
+        const why_not = now?.emergency_stop ? say('why_emergency') : now?.mode !== 'automatic' ? say('needs_automatic') : program.state === 'fault' ? say('needs_program_reset') : '';
+        desk.permit(row.start, 'program_start', why_not === '', why_not);
+        desk.permit(row.stop, 'program_stop', program.state === 'running', say('program_not_running'));
+        desk.permit(row.reset, 'program_reset', program.state !== 'running', say('program_is_running'));
     });
     const root = element('div', {}, element('table', {}, body), hint);
     return {

@@ -6,6 +6,7 @@ import { Licence, page_licences } from '../licences';
 import { duration } from '../numbers';
 import { local_time } from '../save';
 import { said_element } from '../sentences/said';
+import { copy_button } from '../recording_copy';
 import { MachineState } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
@@ -26,17 +27,20 @@ const log_ms = 1000, most_lines = 500;
 function recordings(desk: Desk) {
     const body = element('tbody'), none = element('p', { class: 'hint' });
     const rows = new Rows(body, (recorded: Recorded) => recorded.name, (recorded) => {
-        const size = element('td', { class: 'number' });
+        const size = element('td', { class: 'number' }), copy = copy_button(desk, recorded.name);
         return { root: element('tr', { 'data-recorded': recorded.name }, element('td', { class: 'number' }, local_time(recorded.utime)), element('td', {}, where(recorded.source)), element('td', { lang: 'en' }, recorded.alarm), size,
-            element('td', {}, element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(recorded.name)}` }, say('open_recording')))), size };
-    }, (row, recorded) => write(row.size, recorded.complete ? `${(recorded.bytes / 1024).toFixed(0)} kB` : say('being_recorded')));
+            element('td', {}, element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(recorded.name)}` }, say('open_recording'))), element('td', {}, copy.root)), size, copy };
+    }, (row, recorded) => {
+        row.copy.permit(recorded.complete);
+        write(row.size, recorded.complete ? `${(recorded.bytes / 1024).toFixed(0)} kB` : say('being_recorded'));
+    });
     const inquiry = new Inquiry(desk, () => ({ cmd: 'recordings' }), recordings_ms, (answer) => {
         const list = (answer['recordings'] as Recorded[] | undefined) ?? [];
         rows.update(list);
         write(none, list.length === 0 ? say('no_recordings') : '');
     });
     return {
-        root: panel('recordings', none, element('div', { class: 'scroll' }, table(['since', 'source', 'alarms', 'size', 'recording'], body))),
+        root: panel('recordings', none, element('div', { class: 'scroll' }, table(['since', 'source', 'alarms', 'size', 'recording', 'save_recording'], body))),
         step() {
             inquiry.step();
             if (inquiry.unknown) write(none, say('not_known'));

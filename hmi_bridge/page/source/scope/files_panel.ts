@@ -1,4 +1,5 @@
 // What is kept: recordings of alarms, files, pictures, set-ups.
+import { where } from '../alarm_words';
 import { Answer } from '../link';
 import { Key, say } from '../texts';
 import { element, Rows, write } from '../view';
@@ -45,7 +46,7 @@ export class FilesPanel {
     constructor(private readonly session_: Session, private readonly stack_: Stack, private readonly other_: () => HTMLCanvasElement | undefined, private readonly changed_: () => void) {
         this.rows_ = new Rows<Recording, { root: HTMLElement; text: HTMLElement }>(this.recordings_, (r) => r.name, (recording) => {
             const text = element('small');
-            return { root: element('a', { class: 'scope-recording', href: `#scope/recording/${encodeURIComponent(recording.name)}`, 'data-recording': recording.name }, element('b', {}, `${recording.source}: ${recording.alarm}`), text), text };
+            return { root: element('a', { class: 'scope-recording', href: `#scope/recording/${encodeURIComponent(recording.name)}`, 'data-recording': recording.name }, element('b', {}, `${where(recording.source)}: ${recording.alarm}`), text), text };
         }, (row, r) => write(row.text, `${new Date(r.utime / 1000).toLocaleString('sv')} · ${(r.bytes / 1024).toFixed(0)} kB${r.complete ? '' : ' · ' + say('scope_not_complete')}`));
         const name = element('input', { type: 'text', 'aria-label': say('scope_setup_name'), placeholder: say('scope_setup_name'), maxlength: '60', 'data-field': 'setup' });
         const button = (key: Key, what: () => void, tag: string): HTMLElement => element('button', { type: 'button', 'data-do': tag, onclick: what }, say(key));

@@ -38,7 +38,13 @@ export const refusals: Readonly<Record<string, string>> = {
     'Probably frames were lost, and not by the drive (this computer too late for the cycle, another master, a cable or connector); else: {}':
         '可能丢帧，且不是驱动器的问题（本计算机跟不上周期、另一个主站、电缆或插头）；否则：{}',
     'Probably this computer was late, not the drive (see late_wakeups); what the drive says of it: {}': '可能是本计算机迟到，不是驱动器的问题（见 late_wakeups）；驱动器的说明：{}',
+    // Why nothing new comes (hmi_bridge/web/server/feed.hpp).
+    'the machine\'s cycle does not advance': '机器的周期没有推进',
+    'the machine does not answer': '机器无应答',
+    'not asked yet': '尚未询问',
     // The bus: who stands where, what the counters of ports say (ecat/diagnosis/).
+    'between {} and {}': '在 {} 与 {} 之间',
+    '{} port {}': '{} 端口 {}',
     'the master': '主站',
     'the second interface': '第二个网口',
     '{} does not answer': '{} 无应答',

@@ -1,5 +1,11 @@
 // Texts of axes: states, values, commands: English, Chinese.
 export const axis = {
+    axis_before: ['The axis before', '上一个轴'],
+    axis_behind: ['The next axis', '下一个轴'],
+    last_known: ['⚠ last known: the drive does not answer', '⚠ 最后已知值:驱动器无应答'],
+    enables: ['Enable · + · −', '使能 · + · −'],
+    follows: ['Follows', '跟随主轴'],
+    lamp_warning: ['warning', '警告'],
     // axis states (PLCopen)
     axis_Disabled: ['Disabled', '未使能'],
     axis_Standstill: ['Standstill', '静止'],

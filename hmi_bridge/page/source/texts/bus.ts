@@ -1,5 +1,6 @@
 // Texts of the bus and its clocks: English, Chinese.
 export const bus = {
+    state_unknown: ['unknown', '未知'],
     bus_state: ['Bus', '总线'],
     bus_idle: ['idle', '空闲'],
     bus_scanning: ['scanning', '扫描'],

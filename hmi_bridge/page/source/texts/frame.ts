@@ -20,6 +20,7 @@ export const frame = {
     to_light: ['Light', '浅色'],
     other_language: ['中文', 'English'],
     emergency_stop: ['Emergency stop pressed', '急停已按下'],
+    emergency_unread: ['Emergency stop: its input cannot be read', '急停:无法读取急停输入'],
     read_only: ['You may look, not command.', '仅可查看,不可操作。'],
     pages: ['Pages', '页面'],
     grey_stale: ['The values are old: nothing but Stop can be given.', '数据过时:只能停止。'],

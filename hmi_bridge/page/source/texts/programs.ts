@@ -1,5 +1,8 @@
 // Texts of programs, tasks, variables, parameters: English, Chinese.
 export const programs = {
+    needs_program_reset: ['The program is in fault: Reset it first.', '程序处于故障:请先复位。'],
+    program_not_running: ['The program does not run.', '程序未运行。'],
+    program_is_running: ['The program runs: Stop it first.', '程序正在运行:请先停止。'],
     program: ['Program', '程序'],
     program_running: ['running', '运行'],
     program_stopped: ['stopped', '已停止'],

@@ -1,5 +1,7 @@
 // Texts of cycle, versions, roles: English, Chinese.
 export const system = {
+    save_recording: ['Save', '保存'],
+    recording_not_whole: ['The recording did not come whole.', '记录未能完整传输。'],
     cycle_health: ['Cycle', '周期'],
     cycle_time: ['Cycle time', '周期时间'],
     compute: ['Computing', '计算时间'],

@@ -1,4 +1,5 @@
 // What a value is in the newest state, and how it is written for a person.
+import { is_old } from '../axis/is_old';
 import { fixed } from '../numbers';
 import { MachineState, Real, value } from '../state';
 import { Key, say, texts, word } from '../texts';
@@ -26,8 +27,14 @@ export const is_on = (state: MachineState, shown: ShownValue): boolean => {
     const is = number_of(state, shown);
     return !Number.isNaN(is) && is !== 0;
 };
-/** An input whose slave, wire or range is not to be believed. */
-export const doubtful = (state: MachineState, shown: ShownValue): boolean => shown.source === 'input' && state.doubtful_inputs.includes(shown.of);
+/** What only the drive can say. */
+const of_drive = /^(actual_|following_|drive_|in_position$|.*_switch$)/;
+/** An input whose slave, wire or range is not to be believed; what a drive said last that does not answer. */
+export function doubtful(state: MachineState, shown: ShownValue): boolean {
+    if (shown.source === 'input') return state.doubtful_inputs.includes(shown.of);
+    const axis = shown.source === 'axis' && of_drive.test(shown.member) ? state.axes.find((one) => one.name === shown.of) : undefined;
+    return axis !== undefined && is_old(axis);
+}
 
 /** Decimals that suit a range: four digits that matter. */
 export function decimals_for(shown: ShownValue, given?: number): number | undefined {

@@ -48,7 +48,9 @@ export const bar_widget: MakeWidget = (_desk, layout) => {
         root,
         update(state) {
             const is = number_of(state, shown), part = (at: number) => Math.min(1, Math.max(0, (at - low) / (high - low)));
-            write(number, text_of(state, shown, layout.decimals));
+            const doubt = doubtful(state, shown);
+            write(number, (doubt ? '? ' : '') + text_of(state, shown, layout.decimals));
+            mark(root, 'data-doubtful', doubt);
             const zero = low < 0 && high > 0 ? part(0) : 0, at = Number.isNaN(is) ? zero : part(is);
             fill.style.left = `${(Math.min(zero, at) * 100).toFixed(2)}%`;
             fill.style.width = `${(Math.abs(at - zero) * 100).toFixed(2)}%`;
