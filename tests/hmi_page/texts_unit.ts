@@ -4,7 +4,7 @@ import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { fixed, typed } from '@page/numbers';
+import { fixed, span_of, typed } from '@page/numbers';
 import { rooms, texts } from '@page/texts';
 
 const source = process.env['TAKTWERK_SOURCE'] ?? '';
@@ -80,6 +80,9 @@ test('numbers as a person reads and types them', () => {
     assert.equal(fixed(-12.5), '−12.500');
     assert.equal(fixed('-Infinity'), '−∞');
     assert.equal(fixed('NaN'), '–');
+    assert.equal(span_of(88_200), '88.2 µs');
+    assert.equal(span_of(9_999_000), '9999 µs');
+    assert.equal(span_of(508_844_000), '508.8 ms');
     assert.equal(typed('12,5'), 12.5);
     assert.equal(typed('−3'), -3);
     for (const wrong of ['', '1 2', '0x10', '1,2,3', 'Infinity', 'e5', '.']) assert.ok(Number.isNaN(typed(wrong)), wrong);

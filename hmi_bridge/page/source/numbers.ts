@@ -17,6 +17,8 @@ export function plain(real: Real): string {
 }
 
 export const microseconds = (ns: number): string => (ns / 1000).toFixed(ns < 100_000 ? 1 : 0);
+/** With its unit: milliseconds where microseconds would be five digits. */
+export const span_of = (ns: number): string => (ns < 10_000_000 ? `${microseconds(ns)} µs` : `${(ns / 1e6).toFixed(1)} ms`);
 export const hex = (word: number, digits = 4): string => word.toString(16).toUpperCase().padStart(digits, '0') + 'h';
 
 /** What a person typed; comma or point, NaN where it is no number. */

@@ -3,6 +3,7 @@ import { Desk, panel } from '../desk';
 import { Inquiry } from '../inquiry';
 import { plain } from '../numbers';
 import { file_time, save_file } from '../save';
+import { said } from '../sentences/said';
 import { AxisLayout, AxisState } from '../state';
 import { current_language, say, word } from '../texts';
 import { element, mark, Rows, small_window, write } from '../view';
@@ -31,6 +32,8 @@ export interface DriveParameter {
 
 /** More are not shown at once: a filter is there. */
 const most_shown = 200;
+/** Before why it could not be read, in place of its value. */
+const unread = '⚠ ';
 
 export const range_text = ({ minimum, maximum }: DriveParameter): string =>
     minimum === null ? (maximum === null ? '' : `≤ ${plain(maximum)}`) : maximum === null ? `≥ ${plain(minimum)}` : `${plain(minimum)} … ${plain(maximum)}`;
@@ -57,6 +60,8 @@ export class DriveParameters {
     private readonly file_ = element('input', { type: 'file', accept: '.json,application/json', hidden: true, 'data-input': 'set' });
     private readonly load_ = element('button', { type: 'button', 'data-do': 'load', onclick: () => this.file_.click() }, say('load_set'));
     private readonly said_ = element('p', { class: 'hint', role: 'status' });
+    private most_ = most_shown;
+    private readonly more_ = element('button', { type: 'button', 'data-do': 'more_parameters', onclick: () => { this.most_ += most_shown; } }, say('show_more'));
     private readonly body_ = element('tbody');
     private readonly dialog_ = small_window({});
     private readonly inquiry_: Inquiry;
@@ -73,7 +78,7 @@ export class DriveParameters {
             const read = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_read', 'aria-label': `${say('read')} ${parameter.id}`, onclick: () => void this.read(parameter.id) }, say('read'));
             const change = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_write', 'aria-label': `${say('change')} ${parameter.id}`, onclick: () => this.ask(parameter) }, say('change'));
             const root = element('tr', { 'data-parameter': parameter.id }, element('th', { scope: 'row' }, parameter.id, element('small', { class: 'doc', lang: current_language() }, this.title(parameter))), shown, other,
-                element('td', { class: 'range' }, range_text(parameter), element('small', { class: 'doc' }, word('effective', parameter.effective))), element('td', { class: 'buttons' }, ...(parameter.readable ? [read] : []), ...(parameter.writable ? [change] : [])));
+                element('td', { class: 'range' }, range_text(parameter), ...(parameter.writable ? [element('small', { class: 'doc' }, word('effective', parameter.effective))] : [])), element('td', { class: 'buttons' }, ...(parameter.readable ? [read] : []), ...(parameter.writable ? [change] : [])));
             return { root, shown, other, change, read };
         }, (row, parameter) => {
             const value = this.read_.get(parameter.id), other = this.other(parameter);
@@ -86,15 +91,16 @@ export class DriveParameters {
         });
         this.file_.addEventListener('change', () => void this.load());
         this.root = panel('drive_parameters', element('div', { class: 'bar' }, this.filter_, this.read_all_, this.against_, element('label', { class: 'switch' }, this.different_, element('span', {}, say('only_different'))),
-            element('span', { class: 'space' }), this.save_, this.load_, this.file_), this.said_, element('div', { class: 'scroll tall' }, element('table', { class: 'dense parameters' }, element('thead', {}, element('tr', {}, ...(['name', 'value', 'compared', 'parameter_range'] as const).map((key, i) => element('th', { scope: 'col', class: i === 1 || i === 2 ? 'number' : '' }, say(key))), element('th', {}))), this.body_)), this.dialog_);
+            element('span', { class: 'space' }), this.save_, this.load_, this.file_), this.said_, element('div', { class: 'scroll tall' }, element('table', { class: 'dense parameters' }, element('thead', {}, element('tr', {}, ...(['name', 'value', 'compared', 'parameter_range'] as const).map((key, i) => element('th', { scope: 'col', class: i === 1 || i === 2 ? 'number' : '' }, say(key))), element('th', {}))), this.body_), element('div', { class: 'buttons' }, this.more_)), this.dialog_);
     }
     update(axis: AxisState): void {
         this.inquiry_.step();
         this.moving_ = axis.state !== 'Disabled' && axis.state !== 'Standstill' && axis.state !== 'ErrorStop';
         const shown = this.shown();
-        this.rows_.update(shown.slice(0, most_shown));
+        this.rows_.update(shown.slice(0, this.most_));
+        this.more_.hidden = shown.length <= this.most_;
         write(this.said_, this.inquiry_.unknown ? say('not_known') : this.reading_ > 0 ? say('reading', { count: String(this.reading_) })
-            : this.inquiry_.answer && this.all_.length === 0 ? say('no_drive_parameters') : shown.length > most_shown ? say('more_parameters', { count: String(shown.length), most: String(most_shown) }) : '');
+            : this.inquiry_.answer && this.all_.length === 0 ? say('no_drive_parameters') : shown.length > this.most_ ? say('more_parameters', { count: String(shown.length), most: String(this.most_) }) : '');
         this.desk_.permit(this.read_all_, 'drive_read', shown.length > 0 && this.reading_ === 0);
         this.save_.disabled = this.read_.size === 0;
     }
@@ -121,11 +127,11 @@ export class DriveParameters {
     private async read(name: string): Promise<void> {
         const answer = await this.desk_.link.request({ cmd: 'drive_read', axis: this.layout_.name, parameter: name });
         if (answer.ok) this.read_.set(name, String(answer['shown'] ?? ''));
-        else if (answer.error?.code !== 'page.no_connection') this.read_.set(name, `⚠ ${answer.error?.what ?? ''}`);
+        else if (answer.error?.code !== 'page.no_connection') this.read_.set(name, `${unread}${said(answer.error?.what ?? '').text}`);
     }
     /** One after the other: a drive answers one mailbox at a time. Ends when the page is left. */
     private async read_shown(): Promise<void> {
-        const names = this.shown().filter((parameter) => parameter.readable).slice(0, most_shown).map((parameter) => parameter.id);
+        const names = this.shown().filter((parameter) => parameter.readable).map((parameter) => parameter.id);
         for (this.reading_ = names.length; this.reading_ > 0 && !this.left_ && this.desk_.link.opened; this.reading_--) await this.read(names[names.length - this.reading_] ?? '');
         this.reading_ = 0;
     }
@@ -151,7 +157,7 @@ export class DriveParameters {
         given.select();
     }
     private save(): void {
-        const set = { drive: this.layout_.drive, profile: this.layout_.profile, axis: this.layout_.name, values: Object.fromEntries(this.read_) };
+        const set = { drive: this.layout_.drive, profile: this.layout_.profile, axis: this.layout_.name, values: Object.fromEntries([...this.read_].filter(([, value]) => !value.startsWith(unread))) };
         save_file(`${this.desk_.link.machine}-${this.layout_.name}-${file_time()}.json`, 'application/json', JSON.stringify(set, undefined, 1) + '\n');
     }
     private async load(): Promise<void> {

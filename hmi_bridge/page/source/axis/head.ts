@@ -39,7 +39,8 @@ export class AxisHead {
     constructor(_desk: Desk, private readonly layout_: AxisLayout) {
         const fact = (key: Key): HTMLElement[] => {
             this.facts_[key] = element('dd', { 'data-value': `head_${key}` });
-            return [element('dt', {}, say(key)), this.facts_[key]];
+            const hint: Record<string, string> = key === 'following_error' ? { title: say('following_hint') } : {};
+            return [element('dt', hint, say(key)), this.facts_[key]];
         };
         this.root = element('section', { class: 'panel head' }, element('div', { class: 'head-line' },
             element('div', { class: 'head-position' }, element('div', {}, this.position_, element('span', { class: 'big-unit' }, layout_.unit)), this.old_),

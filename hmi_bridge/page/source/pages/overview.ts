@@ -2,7 +2,7 @@
 import { in_words, key_of, stops, where } from '../alarm_words';
 import { is_old } from '../axis/is_old';
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
-import { fixed, microseconds } from '../numbers';
+import { fixed, span_of } from '../numbers';
 import { said_element } from '../sentences/said';
 import { Alarm, AxisLayout, AxisState, MachineState, value } from '../state';
 import { say, word } from '../texts';
@@ -69,9 +69,9 @@ export function part_of_travel(layout: AxisLayout | undefined, axis: AxisState):
 export function write_cycle(to: Values, state: MachineState, desk: Desk): void {
     const s = state.statistics;
     const of = (name: string) => s[name] ?? 0;
-    to.set('cycle_time', `${microseconds(desk.link.layout?.cycle_ns ?? 0)} µs`);
-    to.set('compute_worst', `${microseconds(of('compute_ns'))} / ${microseconds(of('compute_max_ns'))} µs`);
-    to.set('lateness_worst', `${microseconds(of('lateness_ns'))} / ${microseconds(of('lateness_max_ns'))} µs`);
+    to.set('cycle_time', span_of(desk.link.layout?.cycle_ns ?? 0));
+    to.set('compute_worst', `${span_of(of('compute_ns'))} / ${span_of(of('compute_max_ns'))}`);
+    to.set('lateness_worst', `${span_of(of('lateness_ns'))} / ${span_of(of('lateness_max_ns'))}`);
     to.set('overruns', String(of('overruns')));
     to.set('missed_ticks', String(of('missed_ticks')));
     to.set('bus_state', word('bus', String(state.bus['phase'] ?? '')));

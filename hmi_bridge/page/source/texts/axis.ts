@@ -2,6 +2,8 @@
 export const axis = {
     axis_before: ['The axis before', '上一个轴'],
     axis_behind: ['The next axis', '下一个轴'],
+    show_more: ['Show more', '显示更多'],
+    following_hint: ['Compared at the same instant: the way over the bus and back does not count.', '按同一时刻比较:总线往返时间不计入。'],
     last_known: ['⚠ last known: the drive does not answer', '⚠ 最后已知值:驱动器无应答'],
     enables: ['Enable · + · −', '使能 · + · −'],
     follows: ['Follows', '跟随主轴'],
