@@ -63,6 +63,18 @@ test('let go, the axis stops, and the page says so', { timeout: 60_000 }, async 
     assert.equal((await cell.axis('x')).set_position, at, 'it does not go on');
 });
 
+test('what is no number is not measured as if nothing were typed', { timeout: 60_000 }, async () => {
+    await cell.look('#measure/x');
+    const distance = cell.page.locator('[data-input="distance"]'), path = cell.page.locator('[data-value="measure_path"]');
+    await until('there is a path', async () => /mm/.test((await path.textContent()) ?? ''));
+    await distance.fill('1o');
+    await until('it is told', async () => /"1o"/.test((await path.textContent()) ?? ''));
+    assert.equal(await distance.getAttribute('aria-invalid'), 'true');
+    await until('and cannot be pressed', () => cell.page.locator('[data-cmd="measure"]').isDisabled());
+    await distance.fill('10');
+    await until('again a path', async () => (await distance.getAttribute('aria-invalid')) === null && /10/.test((await path.textContent()) ?? ''));
+});
+
 test('a path beyond a software limit is refused in words and cannot be pressed', { timeout: 60_000 }, async () => {
     await cell.look('#measure/x');
     await cell.page.locator('[data-input="distance"]').fill('100000');

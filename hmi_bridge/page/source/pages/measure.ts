@@ -38,11 +38,27 @@ export function measure(desk: Desk, [wanted = '']: readonly string[]): Page {
         }
         return made;
     };
+    /** What is typed and no number: a path that leaves it out would not be what was asked for. */
+    const wrong = (): string | undefined => {
+        let first: string | undefined;
+        for (const input of fields.querySelectorAll('input')) {
+            const bad = input.value.trim() !== '' && Number.isNaN(typed(input.value));
+            mark(input, 'aria-invalid', bad && 'true');
+            if (bad) first ??= input.value;
+        }
+        return first;
+    };
     const ask_path = (): void => {
         asked = performance.now();
+        const text = wrong();
+        if (text !== undefined) {
+            plan = undefined;
+            write(path, `⚠ ${say('not_a_number', { text })}`);
+            return mark(path, 'data-tone', 'warn');
+        }
         const request = order();
         void desk.link.request(request).then((answer) => {
-            if (left) return;
+            if (left || wrong() !== undefined) return;
             plan = answer.ok ? (answer['measure_plan'] as Plan) : undefined;
             const refusal = answer.error ? [answer.error.what, answer.error.remedy].flatMap((sentence) => (sentence ? [said(sentence).text] : [])).join(' – ') : '';
             write(path, plan ? say('measure_path', { low: digits(plan.lowest), high: digits(plan.highest), unit, velocity: digits(plan.velocity), seconds: digits(plan.duration_s), margin: digits(plan.margin) }) : refusal ? `⚠ ${refusal}` : say('measure_no_path'));

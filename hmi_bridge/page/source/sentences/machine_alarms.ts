@@ -13,7 +13,7 @@ export const machine_alarms: Readonly<Record<string, string>> = {
     'Too many conditions at once': '同时存在的条件过多',
     'Acknowledge and reset what is listed': '对列出的报警进行确认和复位',
     'The host has no real-time kernel, or the thread no real-time priority': '主机没有实时内核，或线程没有实时优先级',
-    'See `taktwerk run` messages about real time; the machine runs on': '查看 `taktwerk run` 关于实时性的提示；机器继续运行',
+    'See `taktwerk run` messages about real time; the machine runs on': '查看启动日志中关于实时性的提示；机器继续运行',
     'Both files in the directory of `retain` are torn or altered, as by a failing disk': '`retain` 目录中的两个文件均已损坏或被改动，例如磁盘故障',
     'Home the axes; check the disk': '各轴回零；检查磁盘',
     'The directory of `retain` cannot be written, its disk is full, or it has not come back from a write for seconds': '`retain` 目录不可写、磁盘已满，或写入已数秒未返回',
@@ -42,6 +42,6 @@ export const machine_alarms: Readonly<Record<string, string>> = {
     'Mend the program; it can ask ctx.good(input) before it computes': '修正程序；计算之前可用 ctx.good(input) 询问',
     'Its coupling opened or its cable was pulled before MC_Power was taken away, or the group lost its supply': '在撤销 MC_Power 之前联接被断开或电缆被拔出，或该组失去电源',
     'Make sure that nothing has fallen; connect the group again or lay it down, then reset. A program takes Enable away and waits for Status before it uncouples': '确认没有物体坠落；重新连接该组或将其放好，然后复位。程序应先撤销 Enable 并等待 Status 再脱开',
-    'Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)': '有人用自己的值代替了实际值（`taktwerk force` 或输入输出页面）',
+    'Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)': '有人用自己的值代替了实际值（例如在输入输出页面）',
     '`taktwerk unforce`, or let who forced them end his session; `state` tells which points and who': '解除强制，或让强制者结束其会话；输入输出页面显示哪些点被谁强制',
 };
