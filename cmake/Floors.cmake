@@ -64,7 +64,7 @@ endfunction()
 # For a folder that reads and writes text and computes little: with sanitizers the optimiser takes half as long again as the rest of the
 # compiler, and what it saves when the tests run is less.
 function(taktwerk_unoptimised_when_sanitized folder)
-  if(TAKTWERK_SANITIZE)
+  if(TAKTWERK_SANITIZE AND NOT TAKTWERK_FUZZ)  # there it runs for hours
     taktwerk_target_name(${folder} target)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O0>)
   endif()

@@ -12,6 +12,7 @@ namespace taktwerk::hmi {
 namespace {
 
 constexpr std::size_t longest_line = 1024;
+constexpr std::size_t most_keys = 64;  ///< more are refused by who reads the line in full
 
 /// As it is written, wherever in the line: who asks for one must not have to write the rest without a fault.
 bool asks_for(std::string_view line, std::string_view command) {
@@ -51,13 +52,15 @@ std::optional<std::uint16_t> axis_of(const nlohmann::json& line, const runtime::
 
 std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::MachineLayout& layout) {
     if (!may_be(line)) return std::nullopt;
-    bool too_deep = false, twice = false, asks_for_a_stop = false, at_cmd = false;
+    bool too_deep = false, too_many = false, twice = false, asks_for_a_stop = false, at_cmd = false;
     std::vector<std::string> keys;
     const auto looked_at = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
         too_deep = too_deep || depth > deepest_nesting;
         if (event == nlohmann::json::parse_event_t::key && depth == 1) {
             const auto& key = value.get_ref<const std::string&>();
             at_cmd = key == "cmd";
+            // Each is compared with all before it: a line of some thousands would hold up the stop that comes behind it.
+            if (keys.size() >= most_keys) return too_many = true, false;
             twice = twice || std::find(keys.begin(), keys.end(), key) != keys.end();
             keys.push_back(key);
         }
@@ -67,6 +70,7 @@ std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::Mach
     const auto json = nlohmann::json::parse(line, looked_at, false);
     const UrgentLine unclear_stop{UrgentLine::Kind::stop, all_axes, false, true};
     if (too_deep || !json.is_object()) return asks_for(line, "\"stop\"") ? std::optional{unclear_stop} : std::nullopt;
+    if (too_many) return asks_for_a_stop || asks_for(line, "\"stop\"") ? std::optional{unclear_stop} : std::nullopt;
     if (twice && !asks_for_a_stop)
         return std::nullopt;  // refused by who reads it in full; a jog that it was to keep alive ends with its lease
     if (twice) return unclear_stop;

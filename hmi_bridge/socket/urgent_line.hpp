@@ -16,8 +16,8 @@ struct UrgentLine {
     Kind kind = Kind::stop;
     std::uint16_t axis = 0xFFFF;  ///< 0xFFFF: all
     bool press = false;
-    /// A key stands in it twice, or it cannot be read to its end, so that nobody can tell what exactly was meant: it stops every axis, and is
-    /// refused all the same.
+    /// A key stands in it twice, it has more than 64, or it cannot be read to its end, so that nobody can tell what exactly was meant: it stops
+    /// every axis, and is refused all the same.
     bool unclear = false;
     std::string id = "null";  ///< as the answer repeats it
     /// The axis of a stop is none of this machine's, or no name: it stops every axis, and is refused all the same.

@@ -11,6 +11,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::size_t most_keys = 64;  ///< of one object; no command has twenty
+
 bool too_deep(std::string_view text, int deepest) {
     int depth = 0;
     bool quoted = false;
@@ -31,17 +33,23 @@ bool too_deep(std::string_view text, int deepest) {
 Result<Json> read_json(std::string_view text, int deepest) {
     const auto wrong = [](const char* code, std::string what) { return Error{code, "", std::move(what), "Reload the page."}; };
     if (too_deep(text, deepest)) return wrong("web.too_deep", fmt::format("there are more than {} levels", deepest));
-    bool duplicate = false;
+    bool duplicate = false, too_many = false;
     std::vector<std::set<std::string>> keys;
     auto json = Json::parse(
         text,
         [&](int, Json::parse_event_t event, Json& value) {
+            if (too_many) return false;
             if (event == Json::parse_event_t::object_start) keys.emplace_back();
             else if (event == Json::parse_event_t::object_end) keys.pop_back();
-            else if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) duplicate = true;
+            else if (event == Json::parse_event_t::key) {
+                // They are looked for one by one: some thousands in one message would hold up everybody else's stop.
+                if (keys.back().size() >= most_keys) return too_many = true, false;
+                duplicate = !keys.back().insert(value.get<std::string>()).second || duplicate;
+            }
             return true;
         },
         false);
+    if (too_many) return wrong("web.too_long", fmt::format("there are more than {} keys in one object", most_keys));
     if (json.is_discarded()) return wrong("web.not_json", "this is no JSON");
     if (duplicate) return wrong("web.duplicate_key", "a key stands twice: nobody can tell which one is meant");
     return json;

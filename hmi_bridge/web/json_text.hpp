@@ -1,5 +1,5 @@
 #pragma once
-// JSON from a stranger: bounded in depth before the parser, whose calls nest as the text does; a key that stands twice is an error. Nothing throws.
+// JSON from a stranger: bounded in depth before the parser, whose calls nest as the text does, and in the keys of one object; a key that stands twice is an error. Nothing throws.
 
 #include <string_view>
 
@@ -9,7 +9,7 @@
 
 namespace taktwerk::hmi::web {
 
-/// Errors: web.too_deep, web.not_json, web.duplicate_key.
+/// Errors: web.too_deep, web.too_long (more than 64 keys in an object), web.not_json, web.duplicate_key.
 [[nodiscard]] Result<nlohmann::ordered_json> read_json(std::string_view text, int deepest);
 /// RFC 3629: no surrogates, nothing overlong.
 [[nodiscard]] bool is_utf8(std::string_view text);

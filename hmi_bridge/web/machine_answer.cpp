@@ -34,8 +34,13 @@ std::string_view MachineAnswer::value_of(std::string_view key) const {
 std::optional<NumberedAnswer> read_machine_answer(std::string_view line) {
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
     if (auto plain = read_plain(line)) return plain;
-    auto json = nlohmann::ordered_json::parse(line, nullptr, false);
-    if (!json.is_object() || !json.contains("id") || !json.contains("ok") || !json["ok"].is_boolean()) return std::nullopt;
+    bool too_deep = false;  // writing it again goes as deep as it does
+    const auto bounded = [&](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
+        too_deep = too_deep || depth > MachineAnswer::deepest;
+        return !too_deep;
+    };
+    auto json = nlohmann::ordered_json::parse(line, bounded, false);
+    if (too_deep || !json.is_object() || !json.contains("id") || !json.contains("ok") || !json["ok"].is_boolean()) return std::nullopt;
     NumberedAnswer out;
     if (json["id"].is_number_integer()) out.id = json["id"].get<std::int64_t>();
     out.answer.ok = json["ok"].get<bool>();

@@ -13,6 +13,7 @@ namespace taktwerk::hmi::web {
 
 struct MachineAnswer {
     static constexpr std::size_t longest = 4 * 1024 * 1024 + 4096;  ///< bytes of a line; the machine drops who leaves more unread
+    static constexpr int deepest = 64;                              ///< levels; what is plain is not looked into
 
     bool ok = false;
     std::string keys;  ///< the object's members but `id`, as text: "ok":true,"state":{...}

@@ -27,7 +27,7 @@ inline std::string bytes_of(const std::string& text) {
 inline std::vector<double> numbers_of(const std::string& text) {
     const auto bytes = bytes_of(text);
     std::vector<double> out(bytes.size() / sizeof(double));
-    std::memcpy(out.data(), bytes.data(), out.size() * sizeof(double));
+    if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(double));
     return out;
 }
 

@@ -14,7 +14,7 @@ struct LoginRequest {
     std::string user, password;
 };
 
-/// Errors: web.login_body, web.too_deep, web.not_json, web.duplicate_key.
+/// Errors: web.login_body, web.too_deep, web.too_long, web.not_json, web.duplicate_key.
 [[nodiscard]] Result<LoginRequest> read_login(std::string_view body);
 /// "application/json", with or without parameters: a form of another page cannot say that without being asked first (CORS).
 [[nodiscard]] bool is_json_type(std::string_view content_type);

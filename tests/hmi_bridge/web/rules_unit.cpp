@@ -219,6 +219,15 @@ TEST(PageMessages, HostileOnesAreRefusedByName) {
     EXPECT_EQ(code_of("{\"type\":\"command\",\"id\":1,\"cmd\":\"\xff\xfe\"}"), "web.not_json");
     EXPECT_EQ(code_of(std::string(60'000, '[')), "web.too_deep");
     EXPECT_EQ(code_of(std::string(PageMessage::longest + 1, ' ')), "web.too_long");
+    // As many keys as a message has room for would hold up everybody else while they are looked for one by one.
+    const auto with_keys = [](int keys) {
+        std::string text = R"({"type":"command","id":1,"cmd":"stop")";
+        for (int key = 3; key < keys; ++key) text += ",\"" + std::to_string(key) + "\":1";
+        return text + "}";
+    };
+    EXPECT_EQ(message_of(with_keys(64)).id, 1);
+    EXPECT_EQ(code_of(with_keys(65)), "web.too_long");
+    EXPECT_EQ(code_of(with_keys(7000)), "web.too_long");
     // Its id comes back where one stood.
     const auto read = read_page_message(R"({"type":"command","id":12,"cmd":"format"})");
     EXPECT_EQ(std::get<UnreadMessage>(read).id, 12);
