@@ -47,8 +47,18 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
         message.kind = PageMessage::Kind::watch;
         return message;
     }
+    if (const auto sent = object.find("sent_ms"); sent != object.end()) {
+        if (!sent->is_number() || !std::isfinite(sent->get<double>()))
+            return web_error("key", "'sent_ms' is not a number", "Reload the page.");
+        message.sent_ms = sent->get<double>();
+    }
+    if (*type == "clock") {
+        message.kind = PageMessage::Kind::clock;
+        if (!message.sent_ms) return web_error("key", "a clock says its time as 'sent_ms'", "Reload the page.");
+        return message;
+    }
     if (*type != "command")
-        return web_error("type", fmt::format("'{}' is no type of message", shown(*type)), "Use watch or command; reload the page.");
+        return web_error("type", fmt::format("'{}' is no type of message", shown(*type)), "Use watch, clock or command; reload the page.");
     const auto id = whole_number(object, "id");
     if (!id || *id < 1) return web_error("id", "a command needs a whole number as 'id', from 1 on", "Reload the page.");
     message.id = *id;
@@ -57,11 +67,6 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
         return web_error("unknown_command", fmt::format("'{}' is no command that a page gives", shown(*cmd)), "Reload the page.");
     for (const char* key : own_keys)
         if (object.contains(key)) return web_error("key", fmt::format("'{}' is the server's to say", key), "Leave it out.");
-    if (const auto sent = object.find("sent_ms"); sent != object.end()) {
-        if (!sent->is_number() || !std::isfinite(sent->get<double>()))
-            return web_error("key", "'sent_ms' is not a number", "Reload the page.");
-        message.sent_ms = sent->get<double>();
-    }
     message.request = object;
     for (const char* key : {"type", "machine", "id", "sent_ms"}) message.request.erase(key);
     return message;

@@ -19,12 +19,12 @@ struct PageMessage {
     static constexpr std::size_t longest = 64 * 1024;  ///< bytes
     static constexpr int deepest = 8;                  ///< levels of objects and arrays
 
-    enum class Kind { watch, command };
+    enum class Kind { watch, clock, command };
     Kind kind = Kind::command;
     std::string machine;  ///< empty: the watched one
     std::int64_t id = 0;
     const CommandRule* rule = nullptr;  ///< of a command
-    std::optional<double> sent_ms;      ///< finite
+    std::optional<double> sent_ms;      ///< finite; of a clock always there
     nlohmann::ordered_json request;     ///< of a command: the socket's own, without id and time
 
     /// A renewal, a press, or (false) a jog let go and everything that moves nothing.

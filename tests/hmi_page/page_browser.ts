@@ -48,6 +48,13 @@ test('values of a server that is silent are grey, with the time since; only STOP
     assert.ok(await banner.isHidden());
 });
 
+test('a page that nobody touches says its time, so that the server can tell an old press from a new one', async () => {
+    const times = () => cell.sent.filter((message) => message['type'] === 'clock').map((message) => Number(message['sent_ms']));
+    const before = times().length;
+    await until('it has said it twice more', () => times().length >= before + 2);
+    assert.ok(times().every((time, i, all) => i === 0 || time - (all[i - 1] ?? 0) < 60_000), 'more often than the two minutes that the server bears');
+});
+
 test('one click makes it Chinese, on every page', async () => {
     await cell.look('#overview');
     await cell.page.locator('[data-do="language"]').click();

@@ -20,6 +20,8 @@ export const stale_after = 500;
 const reconnect_after = 500;
 const answer_within = 3000;
 const most_counted = 200;
+/** The server compares the clocks as often: after minutes of silence it could not tell a press of now from one that a stall has held back. ms. */
+const say_time_each = 2000;
 
 export class Link {
     layout: MachineLayout | undefined;
@@ -70,6 +72,7 @@ export class Link {
         this.socket_ = socket;
         socket.onopen = () => {
             this.opened = true;
+            this.say_time(socket);
             this.on_change();
         };
         socket.onmessage = (event) => this.take(String(event.data));
@@ -106,6 +109,11 @@ export class Link {
         });
     }
 
+    private say_time(socket: WebSocket): void {
+        if (socket.readyState !== WebSocket.OPEN) return;
+        if (!this.stalled) socket.send(JSON.stringify({ type: 'clock', sent_ms: performance.now() }));
+        setTimeout(() => this.say_time(socket), say_time_each);
+    }
     /** Anew, as another user: what the server knows of a page it knows from the beginning of its connection. */
     reopen(): void {
         this.socket_?.close();

@@ -1,10 +1,12 @@
 #pragma once
 // What a page is told first, and again when something of it has changed (../README.md). Included by web_server.cpp alone.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "hmi_bridge/web/page_message.hpp"
 #include "hmi_bridge/web/server/site.hpp"
 
 namespace taktwerk::hmi::web {
@@ -37,6 +39,11 @@ inline std::string stale_text(const Feed& feed, Instant at) {
                         {"machine", feed.name()},
                         {"age_ms", feed.fresh() == Instant{} ? Json{} : Json((at - feed.fresh()) / 1ms)},
                         {"why", feed.why()}});
+}
+
+/// A message that could not be read, or none that may be said; `id` where one stood in it.
+inline std::string error_text(std::optional<std::int64_t> id, const Error& error) {
+    return text_of(Json{{"type", "error"}, {"id", id ? Json(*id) : Json{}}, {"error", error_json(error)}});
 }
 
 inline Error log_in_first() { return Error{"web.login", "", "nobody has logged in at this page", "Log in."}; }

@@ -34,6 +34,7 @@ public:
         close_with(failed_answer({"socket.closed", path_, why, "See that the machine runs, then give the command again."}));
     }
     void ask(Json request, Duration patience, Answer answer) {
+        if (out_.size() >= most_unsent) close("the machine reads nothing");  // and what this connection held ends
         if (closed_)
             return answer(
                 failed_answer({"web.no_machine", path_, "there is no connection to the machine", "Start it with `taktwerk run FILE`."}));
@@ -62,6 +63,8 @@ public:
     [[nodiscard]] std::size_t waiting() const { return waiting_.size(); }
 
 private:
+    static constexpr std::size_t most_unsent = 256;  ///< requests that the kernel did not take yet
+
     struct Waiting {
         Answer answer;
         Instant until;

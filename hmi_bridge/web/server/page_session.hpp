@@ -123,17 +123,16 @@ private:
     void on_text(const std::string& text) override {
         look_at_session(now());
         auto read = read_page_message(text);
-        if (const auto* unread = std::get_if<UnreadMessage>(&read)) {
-            put(text_of(Json{{"type", "error"}, {"id", unread->id ? Json(*unread->id) : Json{}}, {"error", error_json(unread->error)}}));
-            return;
-        }
+        if (const auto* unread = std::get_if<UnreadMessage>(&read)) return put(error_text(unread->id, unread->error));
         auto& message = std::get<PageMessage>(read);
-        const auto named = message.machine.empty() ? feed_ : site_->feeds.named(message.machine);
+        if (message.kind == PageMessage::Kind::clock) return void(age_.of(*message.sent_ms, now()));
+        const bool own = message.machine.empty() || (feed_ && feed_->name() == message.machine);
+        const auto named = own ? feed_ : site_->feeds.named(message.machine);
         if (message.kind == PageMessage::Kind::watch) {
             const auto refused = is_stranger() ? std::optional<Error>{log_in_first()}
                                  : named       ? std::nullopt
                                                : std::optional<Error>{unknown_machine(message.machine)};
-            if (refused) put(text_of(Json{{"type", "error"}, {"id", nullptr}, {"error", error_json(*refused)}}));
+            if (refused) put(error_text(std::nullopt, *refused));
             else watch(named);
             return hello();
         }
@@ -165,7 +164,7 @@ private:
         if (message.may_move() && waited_ > (message.is_held() ? MessageAge::longest_of_jog : MessageAge::longest)) {
             if (message.is_jog()) let_go();
             return Error{"web.too_old", command,
-                         fmt::format("it took {} ms to arrive: nobody knows whether it is still wanted", waited_ / 1ms),
+                         fmt::format("it may have taken {} ms to arrive: nobody knows whether it is still wanted", waited_ / 1ms),
                          "Give it again; if this stays, reload the page and look at the network."};
         }
         const bool lets_go = message.rule->moves && !message.may_move();

@@ -131,6 +131,22 @@ TEST(MessageAgeRule, APageWhoseQuartzIsSlowStaysYoungAllDay) {
         ASSERT_LT(age.of(minute * 60'000.0 * (1 - 100e-6), Instant{minute * 60s}), 1ms) << minute;
 }
 
+// Nobody touched the page for hours; then a stall of three seconds, and what it held back comes at once. The two clocks may have gone apart by seconds.
+TEST(MessageAgeRule, AfterALongSilenceNothingIsTakenForYoung) {
+    MessageAge age;
+    EXPECT_EQ(age.of(0, Instant{1000s}), 0ms);
+    const Instant later = Instant{1000s} + 8h;
+    const double sent = 8 * 3600e3;
+    for (int i = 0; i < 10; ++i) EXPECT_GT(age.of(sent + 50.0 * i, later + 3s), MessageAge::longest) << i;
+    EXPECT_LT(age.of(sent + 3400, later + 3400ms), MessageAge::longest_of_jog) << "given again, it counts";
+}
+
+TEST(MessageAgeRule, APageThatSaysItsTimeStaysYoungAndAStallIsSeenAtOnce) {
+    MessageAge age;
+    for (int second = 0; second <= 8 * 3600; second += 2) ASSERT_LT(age.of(second * 1000.0 * (1 - 100e-6), Instant{second * 1s}), 1ms);
+    EXPECT_GT(age.of(8 * 3600e3 * (1 - 100e-6) + 200, Instant{8h} + 700ms), 450ms);
+}
+
 TEST(MessageAgeRule, AClockThatJumpedIsOldNotOverflown) {
     MessageAge age;
     (void)age.of(1e300, Instant{1s});

@@ -326,6 +326,7 @@ TEST_F(ServerLimits, WhatANetworkHeldBackIsNotCarriedOut) {
             << i;
     EXPECT_EQ(page.ask({{"cmd", "move"}, {"axis", "x"}, {"position", 5}, {"velocity", 5}, {"sent_ms", at + 300}})["error"]["code"],
               "web.too_old");
+    EXPECT_TRUE(page.say({{"type", "clock"}, {"sent_ms", PageClient::now_ms()}})) << "no answer, and nothing is asked of the machine";
     const auto jogs = machine.asked("jog");
     ASSERT_EQ(jogs.size(), 2u) << "the press, and the server's own word that it is let go";
     EXPECT_EQ(jogs[1].request["velocity"], 0);
