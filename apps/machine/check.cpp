@@ -21,9 +21,11 @@
 #include "axes/axis/error_reaction.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/parameter_text.hpp"
+#include "core/installed_memory.hpp"
 #include "hmi_bridge/views/view_check.hpp"
 #include "runtime/check/drive_hazards.hpp"
 #include "runtime/check/machine_remarks.hpp"
+#include "runtime/check/recording_memory.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/tasks/borrowed_rights.hpp"
 #include "runtime/world/world.hpp"
@@ -443,7 +445,9 @@ int check(const CheckOptions& options) {
     const auto of_views = hmi::check(loaded.hmi.views, hmi::view_values_of(config, layout));
     of_programs.insert(of_programs.end(), of_views.begin(), of_views.end());
     if (!of_programs.empty()) return fail(options, of_programs);
-    const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
+    auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
+    if (auto large = runtime::recording_remark(config.recording.depth, std::get<0>(built)->signals().bytes(), installed_memory()))
+        remarks.push_back(std::move(*large));
 
     if (options.json) {
         auto summary = summary_json(config, layout, loaded.warnings, remarks);

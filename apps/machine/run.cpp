@@ -32,6 +32,7 @@
 #include "apps/terminal/line_writer.hpp"
 #include "apps/terminal/print_error.hpp"
 #include "core/calendar_distance.hpp"
+#include "core/installed_memory.hpp"
 #include "core/math.hpp"
 #include "core/realtime.hpp"
 #include "ecat/ring/bus_interfaces.hpp"
@@ -42,6 +43,7 @@
 #include "modbus/line/tty_line.hpp"
 #include "modbus/tcp/tcp_exchange.hpp"
 #include "runtime/alarms.hpp"
+#include "runtime/check/recording_memory.hpp"
 #include "runtime/positions/keeps_positions.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "runtime/run/virtual_runner.hpp"
@@ -135,7 +137,13 @@ std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport,
         print_errors(*errors);
         return nullptr;
     }
-    return std::move(std::get<0>(built));
+    auto machine = std::move(std::get<0>(built));
+    const auto& recording = machine->config().recording;
+    if (auto fits = runtime::recording_fits(recording.depth, machine->signals().bytes(), installed_memory()); !fits) {
+        print_error(fits.error());
+        return nullptr;
+    }
+    return machine;
 }
 
 int run_virtual(LoadedFile loaded, const RunOptions& options) {

@@ -15,7 +15,7 @@ AlarmHistory::AlarmHistory(std::string path, std::int64_t rows, AlarmWatch::Desc
 void AlarmHistory::look(const runtime::Snapshot& snapshot, Instant now, std::int64_t utime) {
     auto changes = watch_.look(snapshot, now, utime);
     if (const auto missed = watch_.missed(); missed != said_missed_) {
-        log_(fmt::format("{} alarms came and went too fast to be seen: the alarm history does not have them", missed - said_missed_));
+        log_(fmt::format("{} alarms came and went too fast to be seen: the alarm history has only their number", missed - said_missed_));
         said_missed_ = missed;
     }
     if (changes.empty()) return;
@@ -74,7 +74,8 @@ void AlarmHistory::fail(const Error& error, Instant now) {
     if (!trouble_ || trouble_->code != error.code)
         log_(fmt::format("{} The machine runs on; it is tried again each {:.0f} s.", error.text(), to_seconds(again)));
     trouble_ = error;
-    store_.reset();
+    // What a full disk has can still be read; before the next write it is opened anew.
+    if (error.code != "history.write") store_.reset();
     next_try_ = now + again;
 }
 
@@ -103,6 +104,7 @@ bool AlarmHistory::write(Instant now) {
     }
     if (taken.empty()) return true;
     Result<void> written;
+    if (trouble_) store_.reset();
     if (open()) {
         std::vector<AlarmWatch::Change> changes;
         changes.reserve(taken.size());

@@ -4,6 +4,8 @@
 #include <iterator>
 #include <utility>
 
+#include "runtime/alarms.hpp"
+
 namespace taktwerk::hmi {
 namespace {
 
@@ -72,13 +74,36 @@ AlarmWatch::Known& AlarmWatch::known(const AlarmFact& fact, Instant since, React
     return alarm;
 }
 
+const AlarmWatch::Change& AlarmWatch::unseen(std::uint64_t more) {
+    if (!unseen_ || now_ - unseen_->left > flutters) {
+        constexpr auto alarm = runtime::id(runtime::MachineAlarm::alarm_log_full);
+        unseen_.emplace();
+        unseen_->fact = {alarm, AlarmSource::machine, 0, 0, 0};
+        unseen_->told.key = next_key_++;
+        auto& row = unseen_->told.row;
+        row.alarm = alarm;
+        row.utime = utime_of(now_);
+        row.reaction = Reaction::warn;
+        row.state = AlarmState::gone;
+    }
+    unseen_->fact.a += static_cast<double>(more);
+    unseen_->left = now_;
+    unseen_->told.row.cleared_utime = utime_of(now_);
+    describe(*unseen_);
+    return unseen_->told;
+}
+
 std::vector<AlarmWatch::Change> AlarmWatch::look(const runtime::Snapshot& snapshot, Instant now, std::int64_t utime) {
     now_ = now;
     utime_ = utime;
     for (auto& alarm : known_) alarm.listed = false;
 
+    std::vector<Change> changes;
     const auto& passed = snapshot.passed_alarms;
-    missed_ += std::max(next_passed_, passed.oldest()) - next_passed_;
+    if (const auto more = std::max(next_passed_, passed.oldest()) - next_passed_; more > 0) {
+        missed_ += more;
+        changes.push_back(unseen(more));
+    }
     for (auto number = std::max(next_passed_, passed.oldest()); number < passed.noted(); ++number) {
         const auto& gone = passed.at(number);
         auto& alarm = known(gone.fact, gone.since, gone.reaction);
@@ -119,7 +144,6 @@ std::vector<AlarmWatch::Change> AlarmWatch::look(const runtime::Snapshot& snapsh
     for (auto& alarm : left_)
         if (named(alarm)) named_late_.push_back(alarm.told);
 
-    std::vector<Change> changes;
     for (auto& alarm : known_) {
         auto& row = alarm.told.row;
         if (!alarm.listed && row.state != AlarmState::gone) {

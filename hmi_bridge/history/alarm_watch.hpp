@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,8 @@ public:
     [[nodiscard]] std::vector<Change> look(const runtime::Snapshot& snapshot, Instant now, std::int64_t utime);
     /// What was recorded around an alarm of the list, or one of those that left it last; a change of the next look.
     void name_recording(const AlarmFact& fact, Instant since, std::string recording);
-    /// Alarms that passed unseen, because more came between two looks than the machine remembers.
+    /// Alarms that passed unseen, because more came between two looks than the machine remembers. A row says how many (alarm_log_full), one for
+    /// those that follow each other within `flutters`.
     [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
 
 private:
@@ -57,6 +59,8 @@ private:
     Known* fluttering(const AlarmFact& fact, Instant since, Reaction reaction);
     Known& known(const AlarmFact& fact, Instant since, Reaction reaction);
     void describe(Known& alarm) const;
+    /// The row of those that nobody saw.
+    [[nodiscard]] const Change& unseen(std::uint64_t more);
     /// True: it has just got one.
     [[nodiscard]] bool named(Known& alarm) const;
     [[nodiscard]] std::int64_t utime_of(Instant at) const noexcept;
@@ -66,6 +70,7 @@ private:
     std::vector<Known> known_;
     std::deque<Known> left_;
     std::vector<Change> named_late_;
+    std::optional<Known> unseen_;
     std::uint64_t next_key_ = 1, next_passed_ = 0, missed_ = 0;
     Instant now_{};
     std::int64_t utime_ = 0;

@@ -2,6 +2,10 @@
 
 #include "runtime/machine/machine.hpp"
 
+#include <new>
+
+#include <fmt/format.h>
+
 #include "runtime/check/machine_check.hpp"
 #include "runtime/check/program_check.hpp"
 #include "runtime/machine/machine_impl.hpp"
@@ -22,7 +26,15 @@ std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(Machin
         errors.insert(errors.end(), of_programs.begin(), of_programs.end());
         return errors;
     }
-    auto impl = std::make_unique<Impl>(std::move(config), transport, lines, exchanges, errors);
+    const auto depth = config.recording.depth;
+    std::unique_ptr<Impl> impl;
+    try {
+        impl = std::make_unique<Impl>(std::move(config), transport, lines, exchanges, errors);
+    } catch (const std::bad_alloc&) {  // by far the most of it is what is recorded
+        errors.push_back({"recording.memory", "recording.depth",
+                          fmt::format("this computer has no memory for {:g} s of every signal of every cycle", to_seconds(depth)),
+                          "write a shorter `recording: {depth: ...}`"});
+    }
     if (!errors.empty()) return errors;
     return std::unique_ptr<Machine>(new Machine(std::move(impl)));
 }

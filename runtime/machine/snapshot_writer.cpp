@@ -60,7 +60,7 @@ void SnapshotWriter::step() noexcept {
     const auto alarms = body_.log.alarms();
     s.alarm_count = alarms.size();
     std::ranges::copy(alarms, s.alarms.begin());
-    if (const auto& passed = body_.log.passed(); s.passed_alarms.noted() != passed.noted()) s.passed_alarms = passed;
+    s.passed_alarms.follow(body_.log.passed());
     const auto& events = body_.requests.events();
     if (s.event_revision != events.revision()) {
         s.event_revision = events.revision();

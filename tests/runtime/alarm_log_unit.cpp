@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 #include "runtime/alarms.hpp"
@@ -60,6 +61,22 @@ TEST_F(Log, OneThatGoesAtOnceIsKeptAmongThosePassed) {
     EXPECT_EQ(log.passed().noted(), 1 + PassedAlarms::capacity + 2);
     EXPECT_EQ(log.passed().oldest(), 3u);
     EXPECT_EQ(log.passed().at(log.passed().oldest()).fact.index, 2);
+}
+
+// Three snapshots in turn follow the list, each after two others: at any time each is what the list was then.
+TEST(Passed, CopiesFollowWhatCameMeanwhile) {
+    PassedAlarms all;
+    std::array<PassedAlarms, 3> copies;
+    std::uint16_t number = 0;
+    for (std::size_t round = 0; round < 600; ++round) {
+        const auto come = round % 50 == 49 ? PassedAlarms::capacity * 3 / 2 : round % 4;
+        for (std::size_t i = 0; i < come; ++i, ++number) all.note({fact(1, number), Reaction::warn, Instant{}, Instant{}});
+        auto& copy = copies[round % copies.size()];
+        copy.follow(all);
+        ASSERT_EQ(copy.noted(), number);
+        ASSERT_EQ(copy.oldest(), all.oldest());
+        for (auto at = copy.oldest(); at < copy.noted(); ++at) ASSERT_EQ(copy.at(at).fact.index, static_cast<std::uint16_t>(at)) << round;
+    }
 }
 
 // Slaves are named some milliseconds later, axes stop in the next cycle: what a person reads first is what it came from.

@@ -2,8 +2,10 @@
 #include "hmi_bridge/history/alarm_history.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <csignal>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
@@ -209,6 +211,48 @@ TEST(AlarmHistory, AReadOnlyFileIsToldAndTheMachineRunsOn) {
     for (int i = 0; i < 30; ++i) kept.step(1s);
     ASSERT_THAT(kept.said, SizeIs(1));
     EXPECT_EQ(kept.ask()["error"]["code"], "history.open");
+}
+
+/// Files of this process grow no further, much as on a disk that is full.
+class FullDisk {
+public:
+    explicit FullDisk(rlim_t most) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &usual_);
+        const rlimit full{most, usual_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &full);
+    }
+    ~FullDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &usual_);
+        std::signal(SIGXFSZ, before_);
+    }
+    FullDisk(const FullDisk&) = delete;
+    FullDisk& operator=(const FullDisk&) = delete;
+
+private:
+    rlimit usual_{};
+    void (*before_)(int);
+};
+
+TEST(AlarmHistory, WhatAFullDiskHasIsShownAndWhatItHasNotComesWhenThereIsRoom) {
+    const HistoryFolder folder;
+    Kept kept(folder.file());
+    kept.raise(0);
+    kept.step(1s);
+    {
+        const FullDisk full(std::filesystem::file_size(folder.file() + "-wal") + 100);
+        for (std::uint16_t i = 1; i < 30; ++i) {  // less than until it is tried again
+            kept.raise(i);
+            kept.step(200ms);
+        }
+        ASSERT_THAT(kept.said, SizeIs(1)) << "once";
+        EXPECT_THAT(kept.said[0], HasSubstr("cannot be written"));
+        const auto shown = kept.ask();
+        ASSERT_EQ(shown["ok"], true) << shown;
+        EXPECT_THAT(shown["alarms"], SizeIs(1)) << "what is there is there";
+    }
+    for (int i = 0; i < 11; ++i) kept.step(1s);
+    EXPECT_THAT(kept.said, SizeIs(2));
+    EXPECT_THAT(kept.ask()["alarms"], SizeIs(30));
 }
 
 TEST(AlarmHistory, TornWhileItIsOpenANewOneBeginsAndTheAlarmIsInIt) {

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include "runtime/alarms.hpp"
+
 namespace taktwerk::hmi {
 namespace {
 
@@ -137,12 +139,44 @@ TEST_F(AlarmWatchTest, OneThatWasListedAndPassesIsOneRow) {
     EXPECT_EQ(gone[0].row.cleared_utime, us(2300ms)) << "the cycle's time, not the look's";
 }
 
-// The machine remembers 16 between two looks: of more, it is said how many are missing.
-TEST_F(AlarmWatchTest, MoreThanAreRememberedAreCounted) {
-    for (std::uint16_t i = 0; i < runtime::PassedAlarms::capacity + 3; ++i)
-        snapshot.passed_alarms.note({{0x3001, AlarmSource::axis, i, 0, 0}, Reaction::warn, Instant{1s}, Instant{1001ms}});
-    EXPECT_THAT(look(2s), SizeIs(runtime::PassedAlarms::capacity));
+// The machine remembers so many between two looks: of more, a row says how many are missing.
+TEST_F(AlarmWatchTest, MoreThanAreRememberedAreCountedInARowOfTheirOwn) {
+    const auto storm = [&](std::size_t alarms) {
+        for (std::size_t i = 0; i < alarms; ++i)
+            snapshot.passed_alarms.note(
+                {{0x3001, AlarmSource::axis, static_cast<std::uint16_t>(i), 0, 0}, Reaction::stop_axis, snapshot.at, snapshot.at + 1ms});
+    };
+    const auto unseen = [](const std::vector<AlarmWatch::Change>& changes) {
+        std::vector<AlarmWatch::Change> found;
+        for (const auto& change : changes)
+            if (change.row.alarm == runtime::id(runtime::MachineAlarm::alarm_log_full)) found.push_back(change);
+        return found;
+    };
+    storm(runtime::PassedAlarms::capacity);
+    EXPECT_THAT(unseen(look(1s)), IsEmpty()) << "each of them is there";
+
+    storm(runtime::PassedAlarms::capacity + 3);
+    auto changes = look(2s);
+    EXPECT_EQ(changes.size(), runtime::PassedAlarms::capacity + 1);
     EXPECT_EQ(watch.missed(), 3u);
+    ASSERT_THAT(unseen(changes), SizeIs(1));
+    const auto first = unseen(changes)[0];
+    EXPECT_EQ(first.row.utime, us(2s));
+    EXPECT_EQ(first.row.state, AlarmState::gone);
+    EXPECT_EQ(first.row.english, "lags by 3.000000") << "the words of that alarm take their number";
+
+    storm(runtime::PassedAlarms::capacity + 40);
+    changes = look(5s);
+    ASSERT_THAT(unseen(changes), SizeIs(1)) << "soon: the same row";
+    EXPECT_EQ(unseen(changes)[0].key, first.key);
+    EXPECT_EQ(unseen(changes)[0].row.english, "lags by 43.000000");
+
+    storm(runtime::PassedAlarms::capacity + 1);
+    changes = look(5s + AlarmWatch::flutters + 1ms);
+    ASSERT_THAT(unseen(changes), SizeIs(1));
+    EXPECT_NE(unseen(changes)[0].key, first.key) << "another trouble";
+    EXPECT_EQ(unseen(changes)[0].row.english, "lags by 1.000000");
+    EXPECT_THAT(look(20s), IsEmpty());
 }
 
 // A computer without real time wakes late again and again: ten thousand notes must not push out the alarm that stopped the machine.
