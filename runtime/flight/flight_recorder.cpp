@@ -5,11 +5,13 @@
 #include <fstream>
 #include <numeric>
 #include <set>
+#include <span>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "runtime/alarms.hpp"
 #include "runtime/recording/cycle_at.hpp"
 #include "runtime/stamped_name.hpp"
 
@@ -99,8 +101,17 @@ bool FlightRecorder::notice(const AlarmFact& fact, Reaction reaction, Instant si
 }
 
 void FlightRecorder::look(const Snapshot& snapshot) {
-    if (snapshot.phase != MachinePhase::running || config_.files == 0) return;  // at the end things are meant to stop
-    alarms_.look(snapshot, [this](const AlarmFact& fact, Reaction reaction, Instant since) { return notice(fact, reaction, since); });
+    if (config_.files == 0) return;
+    // At the end things are meant to stop: then only what came before it.
+    auto until = Instant::max();
+    if (snapshot.phase != MachinePhase::running) {
+        const auto listed = std::span{snapshot.alarms}.first(snapshot.alarm_count);
+        const auto end = std::ranges::find(listed, id(MachineAlarm::stopped_by_signal), [](const ActiveAlarm& a) { return a.fact.id; });
+        if (end == listed.end()) return;
+        until = end->since;
+    }
+    alarms_.look(snapshot,
+                 [&](const AlarmFact& fact, Reaction reaction, Instant since) { return since < until && notice(fact, reaction, since); });
 }
 
 std::string FlightRecorder::recording_of(const AlarmFact& fact, Instant since) const {

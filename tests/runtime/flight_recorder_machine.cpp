@@ -323,6 +323,25 @@ TEST_F(Flight, WhatIsNotFinishedAtTheEndIsWrittenAsFarAsItCame) {
     EXPECT_EQ(recorder->finish()->path, "") << "once";
 }
 
+// Nobody looked between the alarm and the end: the last words of a machine are those that are wanted most. What comes behind is meant to stop.
+TEST_F(Flight, AnAlarmJustBeforeTheEndIsRecordedAndOneBehindItIsNot) {
+    start();
+    run(1500ms);
+    fault("x");
+    ASSERT_TRUE(machine->until([&] { return machine->axis(0).state == axes::AxisState::ErrorStop; }, 1s));
+    machine->machine->request_shutdown();
+    machine->run(2ms);
+    fault("y");
+    machine->run(20ms);
+    ASSERT_NE(machine->state().phase, MachinePhase::running);
+    ASSERT_THAT(machine->alarms(), HasSubstr("axis y")) << "it is there";
+    recorder->look(machine->state());
+    take(recorder->finish());
+    ASSERT_THAT(files, SizeIs(1));
+    for (const auto& alarm : files[0].alarms) EXPECT_EQ(alarm.source, "axis x") << alarm.name;
+    EXPECT_EQ(recorder->finish()->path, "");
+}
+
 // The same run again gives the same recording, but for what this computer took to compute it.
 TEST_F(Flight, TwoEqualRunsLeaveEqualRecordings) {
     const auto once = [&] {
