@@ -32,6 +32,11 @@ public:
         ws_.set_option(timeout);
         ws_.read_message_max(PageMessage::longest);
         ws_.text(true);
+        // A page that says goodbye holds nothing any more, also when its connection stays: Beast reads until it closes that, too.
+        ws_.control_callback([weak = weak_from_this()](websocket::frame_type kind, beast::string_view) {
+            const auto self = weak.lock();
+            if (self && kind == websocket::frame_type::close) asio::post(self->ws_.get_executor(), [self] { self->on_end(); });
+        });
         ws_.async_accept(request, [self = shared_from_this()](error_code failure) {
             if (failure) return self->end();
             self->open_ = true;
@@ -52,7 +57,7 @@ public:
 protected:
     virtual void on_open() = 0;
     virtual void on_text(const std::string& text) = 0;
-    virtual void on_end() = 0;
+    virtual void on_end() = 0;  ///< also twice
 
     /// Drops a page that has taken nothing for too long.
     void expire(Instant at) {

@@ -1,6 +1,10 @@
 // `taktwerk run --hmi`: the page is served by a process of its own, which ends with the run and whose death the machine does not feel.
 
+#include <unistd.h>
+
 #include <csignal>
+#include <fstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,6 +44,27 @@ TEST_F(PageBesideTheMachine, TheRunServesItAndItsDeathIsToldAndNothingElse) {
     EXPECT_GT(machine.cycle(1s), before);
     machine.child->signal(SIGTERM);
     EXPECT_EQ(machine.child->wait(20s), exit_ok) << machine.child->text();
+}
+
+// The run may be root's or may have borrowed what the bus needs: its page's server, which strangers talk to, has nothing of it.
+TEST_F(PageBesideTheMachine, TheServerHasNoneOfTheRunsRights) {
+    QuietMachine machine{{"--hmi=127.0.0.1:0"}};
+    ASSERT_NE(machine.port(), 0) << machine.child->text();
+    const auto rights = [](pid_t of, const std::string& name) {
+        std::ifstream status("/proc/" + std::to_string(of) + "/status");
+        for (std::string line; std::getline(status, line);)
+            if (line.starts_with(name + ":")) return std::stoull(line.substr(name.size() + 1), nullptr, 16);
+        return ~0ull;
+    };
+    const auto server = QuietMachine::child_of(machine.child->pid());
+    ASSERT_GT(server, 1);
+    // CAP_DAC_OVERRIDE and CAP_NET_BIND_SERVICE of capability.h, and those of root alone.
+    const auto may = ::geteuid() == 0 ? 1ull << 1 | 1ull << 10 : 0ull;
+    for (const char* set : {"CapEff", "CapPrm", "CapInh", "CapAmb"}) EXPECT_EQ(rights(server, set) & ~may, 0u) << set;
+    EXPECT_EQ(rights(server, "NoNewPrivs"), 1u);
+    if (::geteuid() == 0) {
+        EXPECT_NE(rights(machine.child->pid(), "CapEff") & ~may, 0u) << "else the run had nothing to lose";
+    }
 }
 
 TEST_F(PageBesideTheMachine, ItEndsWithTheRunHoweverThatEnds) {

@@ -213,6 +213,20 @@ TEST_F(ServedSite, WhoMayLessThanBeforeLetsGoWhatHeHeld) {
     EXPECT_EQ(page.ask({{"cmd", "mode"}, {"mode", "manual"}})["ok"], true) << "and he goes on with what he may";
 }
 
+// RFC 6455 section 7.1.1 leaves the connection to the server to close; who keeps it open as well holds nothing by that.
+TEST_F(ServedSite, WhoSaysGoodbyeHoldsNothingAnyMore) {
+    serve();
+    PageClient page;
+    ASSERT_TRUE(page.open(port));
+    ASSERT_TRUE(shows_machine(page));
+    EXPECT_EQ(page.ask({{"cmd", "force"}, {"input", "a"}, {"value", 1}})["ok"], true);
+    ASSERT_EQ(machine.connections(), 2u);
+    const auto at = PageClock::now();
+    ASSERT_TRUE(page.say_bytes(PageClient::frame(0x88, "\x03\xe8")));
+    while (machine.connections() > 1 && PageClock::now() - at < 5s) ::usleep(5'000);
+    EXPECT_LT(PageClock::now() - at, 1500ms) << "Beast gives up after 2 s";
+}
+
 // The numbers are login_gate.hpp's: ten at once; the real user, who has logged in from here before, gets in all the same.
 TEST_F(ServedSite, GuessingIsRefusedAfterTenTries) {
     ServerOptions options;
