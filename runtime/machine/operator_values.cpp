@@ -11,7 +11,7 @@ OperatorValues::OperatorValues(const ProgramHost& host)
         // A task that is not there is an error of the declaration, and this machine will not be built.
         if (value.task < of_task_.size()) of_task_[value.task].push_back(static_cast<std::uint16_t>(values_.size()));
         const auto& variable = host.variables()[value.variable];
-        values_.push_back({value, variable.type, variable.program, 0, false, false, 0, {}});
+        values_.push_back({value, variable.type, variable.program, 0, false, false, false, 0, {}});
     }
 }
 
@@ -25,7 +25,7 @@ Verdict OperatorValues::write(const OperatorCommand& command, Instant now, bool 
     auto& value = values_[static_cast<std::size_t>(by_variable_[command.index])];
     if (!host_.variable(command.index).takes(command.value)) return {Answer::bad_value};
     if (command.value == 0 && value.of.momentary) {
-        release(value);  // letting go is everybody's right, and never too late
+        lift(value);  // letting go is everybody's right, and never too late
         return {};
     }
     const bool puts_on = value.type == VariableType::boolean && command.value != 0;
@@ -38,6 +38,7 @@ Verdict OperatorValues::write(const OperatorCommand& command, Instant now, bool 
         value.until = now + lease;
         if (value.held) return {};  // renewed; what the program made of it meanwhile stands
         value.held = true;
+        value.falls = false;
         value.client = command.client;
     }
     value.given = command.value;
@@ -45,12 +46,29 @@ Verdict OperatorValues::write(const OperatorCommand& command, Instant now, bool 
     return {};
 }
 
-// A press that its task has not seen yet is taken back: as with a button at an input.
+// A press that its task has not seen yet is taken back: what ends it is a stop, or nobody knows what the hand wants.
 void OperatorValues::release(Value& value) noexcept {
-    if (!value.held) return;
-    value.held = false;
+    if (!value.held && !value.falls) return;
+    value.held = value.falls = false;
     value.given = 0;
     value.waits = true;
+}
+
+// By the hand that pressed: a tap shorter than the period of its task was meant, and one run sees it.
+void OperatorValues::lift(Value& value) noexcept {
+    if (value.held && value.waits) {
+        value.held = false;
+        value.falls = true;
+        return;
+    }
+    if (value.held) release(value);
+}
+
+/// Taken by its task: what was let go meanwhile falls with the next run.
+void OperatorValues::taken(Value& value) noexcept {
+    value.waits = value.falls;
+    if (value.falls) value.given = 0;
+    value.falls = false;
 }
 
 void OperatorValues::let_go(std::size_t program) noexcept {
@@ -60,7 +78,7 @@ void OperatorValues::let_go(std::size_t program) noexcept {
 
 void OperatorValues::let_go_of(std::uint32_t client) noexcept {
     for (auto& value : values_)
-        if (value.client == client) release(value);
+        if (value.held && value.client == client) release(value);
 }
 
 void OperatorValues::let_go_all() noexcept {
@@ -77,7 +95,7 @@ void OperatorValues::apply(std::size_t task) noexcept {
         auto& value = values_[place];
         if (!value.waits) continue;
         ProgramHost::write(value.type, value.of.address, value.given);
-        value.waits = false;
+        taken(value);
     }
 }
 
@@ -87,7 +105,7 @@ std::size_t OperatorValues::take(std::size_t task, std::span<SlowTask::Write> ou
         auto& value = values_[place];
         if (!value.waits || count == out.size()) continue;
         out[count++] = {value.type, value.of.address, value.given};
-        value.waits = false;
+        taken(value);
     }
     return count;
 }

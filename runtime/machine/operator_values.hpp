@@ -49,10 +49,13 @@ private:
         double given = 0;
         bool waits = false;  // given, and not in its variable yet
         bool held = false;   // a button
+        bool falls = false;  // let go before its task saw the press: once it has, it is 0
         std::uint32_t client = 0;
         Instant until{};
     };
-    void release(Value& value) noexcept;
+    static void release(Value& value) noexcept;
+    static void lift(Value& value) noexcept;
+    static void taken(Value& value) noexcept;
 
     const ProgramHost& host_;
     std::vector<Value> values_;

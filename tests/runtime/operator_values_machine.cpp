@@ -320,6 +320,57 @@ TEST_F(OperatorValue, ASlowTaskFindsItAtTheBeginningOfItsNextRun) {
     EXPECT_EQ(shown("presses"), 1);
 }
 
+// Pressed and let go between two runs of a task of 20 ms: one run sees it, and one only.
+TEST_F(OperatorValue, ATapShorterThanTheTasksPeriodIsSeenByOneRun) {
+    start(&entry_of<WrittenSlowly>, 20);
+    m().run(100ms);
+    const auto tap = [&] {
+        ASSERT_TRUE(m().until([&] { return m().state().cycle % 20 == 3; }, 1s));
+        ASSERT_EQ(press().answer, Answer::accepted);
+        m().run(1ms);
+        ASSERT_EQ(write("start", 0).answer, Answer::accepted);
+        ASSERT_LT(m().state().cycle % 20, 15u) << "still before the next release";
+    };
+    tap();
+    m().run(100ms);
+    EXPECT_EQ(shown("presses"), 1);
+    EXPECT_EQ(shown("scans_pressed"), 1);
+    EXPECT_EQ(shown("start"), 0);
+    tap();
+    m().run(100ms);
+    EXPECT_EQ(shown("presses"), 2);
+    EXPECT_EQ(shown("scans_pressed"), 2);
+}
+
+// The same where both come in one cycle, to a task that runs in each.
+TEST_F(OperatorValue, ATapWithinOneCycleIsSeen) {
+    start();
+    OperatorCommand c;
+    c.action = set_value, c.index = place("start"), c.client = 1, c.flag = true, c.value = 1, c.sequence = 1;
+    ASSERT_TRUE(m().machine->submit(c));
+    c.flag = false, c.value = 0, c.sequence = 2;
+    ASSERT_TRUE(m().machine->submit(c));
+    m().run(10ms);
+    EXPECT_EQ(shown("presses"), 1);
+    EXPECT_EQ(shown("scans_pressed"), 1);
+    EXPECT_EQ(shown("start"), 0);
+}
+
+TEST_F(OperatorValue, ATapThatAStopOvertakesIsNotSeen) {
+    for (const bool emergency : {false, true}) {
+        start(&entry_of<WrittenSlowly>, 20);
+        m().run(100ms);
+        ASSERT_TRUE(m().until([&] { return m().state().cycle % 20 == 3; }, 1s));
+        ASSERT_EQ(press().answer, Answer::accepted);
+        ASSERT_EQ(write("start", 0).answer, Answer::accepted);
+        if (emergency) m().world.set_input("estop_ok", false);
+        else ASSERT_EQ(m().command(program_stop, 0).answer, Answer::accepted);
+        m().run(100ms);
+        EXPECT_EQ(shown("presses"), 0);
+        EXPECT_EQ(shown("start"), 0);
+    }
+}
+
 TEST_F(OperatorValue, ASlowTaskThatRestsShowsWhatIsWritten) {
     start(&entry_of<WrittenSlowly>, 20);
     m().run(100ms);
