@@ -73,13 +73,13 @@ std::vector<ChannelBook::Row> ChannelBook::rows(std::int64_t utime) const {
         out.push_back(channel.row);
         const auto since = static_cast<double>(utime - channel.window_utime) / 1e6;
         const bool silent = since >= 2;  // nothing has closed its window
-        // Of a first window: its gaps, of which there is one less than messages.
-        if (channel.window_rate < 0 && !silent)
-            out.back().rate = channel.row.messages < 2 || channel.row.last_utime == channel.row.first_utime
-                                  ? 0
-                                  : static_cast<double>(channel.row.messages - 1) * 1e6 /
-                                        static_cast<double>(channel.row.last_utime - channel.row.first_utime);
-        else out.back().rate = silent ? static_cast<double>(channel.window_messages) / since : channel.window_rate;
+        // Of a first window: its gaps, of which there is one less than messages; but what came in one burst is no rate.
+        if (channel.window_rate < 0 && !silent) {
+            const auto gaps = static_cast<double>(channel.row.last_utime - channel.row.first_utime);
+            const auto messages = static_cast<double>(channel.row.messages);
+            const double most = since > 0 ? messages / since : 0;
+            out.back().rate = channel.row.messages < 2 || gaps <= 0 ? 0 : std::min((messages - 1) * 1e6 / gaps, most);
+        } else out.back().rate = silent ? static_cast<double>(channel.window_messages) / since : channel.window_rate;
     }
     return out;
 }

@@ -56,7 +56,8 @@ std::optional<Error> play_hazard(const LogContent& content, const hmi::LcmUrl& u
 
 Instant PlayClock::due(std::int64_t utime) const {
     if (speed_ <= 0 || utime <= first_) return start_;
-    return start_ + from_seconds(static_cast<double>(utime - first_) / 1e6 / speed_);
+    constexpr double longest = 1e9;  // s: a stamp may be anything, and a clock has an end
+    return start_ + from_seconds(std::min(longest, (static_cast<double>(utime) - static_cast<double>(first_)) / 1e6 / speed_));
 }
 
 }  // namespace taktwerk::apps

@@ -60,6 +60,9 @@ void draw(const std::string& text, bool first) {
     std::fflush(stdout);
 }
 
+/// Whoever read what is printed (`| head`) has gone: nobody sees the rest.
+bool nobody_reads() { return std::ferror(stdout) != 0; }
+
 int no_pattern(const std::string& text) {
     print_error(
         {"lcm.channel", text, "this is no channel and no regular expression", "Write a name, or one such as 'TAKTWERK_.*_AXIS_STATE'."});
@@ -77,7 +80,7 @@ int spy_file(const SpyOptions& options, const hmi::TypeCatalog& catalog) {
     ChannelBook book(catalog);
     std::int64_t last = 0;
     while (const auto message = log->next()) {
-        if (stop_requested()) break;
+        if (stop_requested() || nobody_reads()) break;
         last = message->utime;
         if (options.channel.empty()) {
             book.note(message->channel, message->data, message->utime);
@@ -105,7 +108,7 @@ int spy_channels(const SpyOptions& options, hmi::LcmBus& bus, const hmi::TypeCat
     const auto start = clock.now();
     const auto end = options.for_s > 0 ? start + from_seconds(options.for_s) : options.once ? start + listened_once : Instant::max();
     bool first = true;
-    for (auto next = start + refresh; !stop_requested() && clock.now() < end;) {
+    for (auto next = start + refresh; !stop_requested() && !nobody_reads() && clock.now() < end;) {
         bus.wait(std::max(Duration{1ms}, std::min(next, end) - clock.now()), messages_at_once);
         if (options.once || clock.now() < next) continue;
         next = clock.now() + refresh;
@@ -134,7 +137,7 @@ int spy_messages(const SpyOptions& options, hmi::LcmBus& bus, const hmi::TypeCat
     const auto end = options.for_s > 0 ? start + from_seconds(options.for_s) : options.once ? start + waited_for_a_message : Instant::max();
     auto enough = Instant::max();
     bool first = true;
-    for (auto next = start + refresh_of_messages; !stop_requested() && clock.now() < std::min(end, enough);) {
+    for (auto next = start + refresh_of_messages; !stop_requested() && !nobody_reads() && clock.now() < std::min(end, enough);) {
         bus.wait(std::max(Duration{1ms}, std::min({next, end, enough}) - clock.now()), messages_at_once);
         if (options.once && !newests.empty() && enough == Instant::max()) enough = clock.now() + siblings;
         if (clock.now() < next) continue;

@@ -134,7 +134,8 @@ std::string part_of(const hmi::TypeCatalog& catalog, std::span<const std::byte> 
     const auto read = hmi::read_message(catalog, *type, message);
     if (!read) return {};
     for (const char* key : {"axis_index", "first"})
-        if (const auto found = read->find(key); found != read->end()) return fmt::format("{:08}", found->get<std::int64_t>());
+        if (const auto found = read->find(key); found != read->end() && found->is_number_integer())
+            return fmt::format("{:08}", found->get<std::int64_t>());
     return {};
 }
 

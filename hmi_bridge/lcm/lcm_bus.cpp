@@ -23,6 +23,9 @@ namespace {
 
 /// Room for the commands of one service step and a burst; beyond it LCM drops the newest, and their clients repeat them.
 constexpr int subscription_queue = 256;
+/// A datagram that ends before its channel does has, as LCM counts, 4 GB and a few bytes less of data; and a first fragment may promise as much.
+/// Nobody's message is so long, and reading one that is not there ends the process.
+constexpr std::size_t longest_delivered = std::size_t{64} << 20;
 
 /// LCM itself would only print "No route to" and a scrambled address. 0, or errno.
 int multicast_problem(const LcmUrl& url) {
@@ -63,6 +66,7 @@ struct Subscriber {
     MessageBus::Handler handler;
     /// C code calls this: nothing may be thrown through it.
     void receive(const lcm::ReceiveBuffer* message, const std::string&) noexcept {
+        if (message->data_size > longest_delivered) return;
         try {
             handler({static_cast<const std::byte*>(message->data), message->data_size});
         } catch (...) {
@@ -74,6 +78,7 @@ struct Subscriber {
 struct ChannelSubscriber {
     LcmBus::ChannelHandler handler;
     void receive(const lcm::ReceiveBuffer* message, const std::string& channel) noexcept {
+        if (message->data_size > longest_delivered) return;
         try {
             handler(channel, {static_cast<const std::byte*>(message->data), message->data_size}, message->recv_utime);
         } catch (...) {

@@ -82,7 +82,7 @@ private:
             for (std::size_t i = 0; i < value.size(); ++i) add_part(part, value[i], fmt::format("{}[{}]", path, i));
     }
     [[nodiscard]] std::string value(const LcmType& type, const LcmField& field, const Json& message, const Json& found) const {
-        auto unit = unit_in(field.comment);
+        auto unit = found.is_string() ? std::string{} : unit_in(field.comment);  // a text may be about units
         if (unit == since_1970)
             return found.is_number_integer() ? scalar(found) + " us" + calendar(found.get<std::int64_t>()) : scalar(found);
         if (const auto own = message.find("unit"); own != message.end() && own->is_string()) {

@@ -1,6 +1,7 @@
 // Prints the positions of a machine's axes, and STALE when they are older than 500 ms: axis_positions DEMO
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <string>
@@ -12,9 +13,12 @@ using Clock = std::chrono::steady_clock;
 struct Positions {
     std::map<std::string, axis_state_v1_t> axes;  // the newest message of each
     Clock::time_point heard{};                    // by this computer's clock: that of the message may be another's
-    void on_axis(const lcm::ReceiveBuffer*, const std::string&, const axis_state_v1_t* axis) {
-        axes[axis->name] = *axis;
+    void on_axis(const lcm::ReceiveBuffer* bytes, const std::string&) try {
+        axis_state_v1_t axis;
+        if (bytes->data_size > 4096 || axis.decode(bytes->data, 0, static_cast<int>(bytes->data_size)) < 0) return;
+        axes[axis.name] = axis;
         heard = Clock::now();
+    } catch (const std::exception&) {  // anybody may publish here: what lies about its lengths throws, and LCM is C
     }
 };
 
