@@ -2,6 +2,7 @@
 // where it will go before it goes. The words of a result: measure_text.cpp.
 
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -29,13 +30,14 @@ struct MeasureOptions {
     RemoteOptions remote;
     std::string axis, kind, csv;
     std::string distance, velocity, acceleration, period, window;  // as written, with a unit or without
-    int count = 0;
-    double from_hz = 0, to_hz = 0;
+    std::optional<int> count;
+    std::optional<double> from_hz, to_hz;
+    double window_u = 0;
     bool only_plan = false;
 };
 
 /// Numbers in the axis' unit.
-Result<nlohmann::json> order_of(hmi::Client& client, const MeasureOptions& options) {
+Result<nlohmann::json> order_of(hmi::Client& client, MeasureOptions& options) {
     nlohmann::json order{{"axis", options.axis}, {"kind", options.kind}};
     const auto layout = layout_of(client);
     if (!layout) return layout.error();
@@ -56,25 +58,26 @@ Result<nlohmann::json> order_of(hmi::Client& client, const MeasureOptions& optio
         if (!value) return value.error();
         order[number.key] = *value;
     }
-    if (options.count > 0) order["count"] = options.count;
-    if (options.from_hz > 0) order["from_hz"] = options.from_hz;
-    if (options.to_hz > 0) order["to_hz"] = options.to_hz;
+    if (!options.window.empty()) {
+        const auto window = config::value_in(options.window, unit);
+        if (!window) return window.error();
+        options.window_u = *window;
+    }
+    if (options.count) order["count"] = *options.count;
+    if (options.from_hz) order["from_hz"] = *options.from_hz;
+    if (options.to_hz) order["to_hz"] = *options.to_hz;
     return order;
 }
 
 Result<Json> result_of(hmi::Client& client, const MeasureOptions& options) {
     nlohmann::json question{{"cmd", "measure_result"}, {"axis", options.axis}};
-    if (!options.window.empty()) {
-        const auto window = config::value_in(options.window, "");
-        if (!window) return window.error();
-        question["window"] = *window;
-    }
+    if (options.window_u > 0) question["window"] = options.window_u;
     auto answer = client.request(question, measure_patience);
     if (!answer) return answer.error();
     return (*answer)["measure_result"];
 }
 
-int measure(const MeasureOptions& options) {
+int measure(MeasureOptions options) {
     auto client = hmi::Client::connect(options.remote.machine);
     if (!client) return report(options.remote, client.error());
     const auto order = order_of(*client, options);
@@ -137,11 +140,12 @@ void add_measure(CLI::App& app, Action& action) {
     sub->add_option("--distance", options->distance, "signed, from where it stands: 10mm; sweep: the most amplitude");
     sub->add_option("--velocity", options->velocity, "the highest: 20mm/s; default: the slow jogging speed");
     sub->add_option("--acceleration", options->acceleration, "the highest; default: half the limit");
-    sub->add_option("--count", options->count, "times to and fro; friction, following: velocities; sweep: frequencies");
-    sub->add_option("--from-hz", options->from_hz, "sweep: the lowest frequency");
-    sub->add_option("--to-hz", options->to_hz, "sweep: the highest");
+    sub->add_option("--count", options->count, "times to and fro; friction, following: velocities; sweep: frequencies")
+        ->check(CLI::PositiveNumber);
+    sub->add_option("--from-hz", options->from_hz, "sweep: the lowest frequency")->check(CLI::PositiveNumber);
+    sub->add_option("--to-hz", options->to_hz, "sweep: the highest")->check(CLI::PositiveNumber);
     sub->add_option("--period", options->period, "cogging: after which way it repeats; default: a turn of the motor");
-    sub->add_option("--window", options->window, "step: settled inside it; default: the axis' in-position window");
+    sub->add_option("--window", options->window, "step: settled inside it, 0.02mm; default: the axis' in-position window");
     sub->add_flag("--plan", options->only_plan, "only say where it would go");
     sub->add_option("--csv", options->csv, "file for the curves");
     sub->callback([&action, options] { action = [options] { return measure(*options); }; });
