@@ -76,6 +76,7 @@ void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out
     if (state_ == State::enabled) take_targets(in, cycle);
     watch_travel(in);
     homing_.exchanged(in);
+    motor_.tell_torque();
     fill(out);
     window_.tell();
 }

@@ -45,8 +45,13 @@ double MotorControl::torque_of(std::int64_t raw) const noexcept {
     return static_cast<double>(raw) / torque_rated_raw_ * plant_.config().rated_torque;
 }
 
+void MotorControl::tell_torque() noexcept {
+    told_torque_ = since_told_ > 0 ? impulse_ / since_told_ : torque_;
+    impulse_ = since_told_ = 0;
+}
+
 std::int64_t MotorControl::raw_torque() const noexcept {
-    return stepper_ ? 0 : std::llround(torque_ / plant_.config().rated_torque * torque_rated_raw_);
+    return stepper_ ? 0 : std::llround(told_torque_ / plant_.config().rated_torque * torque_rated_raw_);
 }
 
 double MotorControl::speed_limit(const AxisInputs& in) const noexcept {

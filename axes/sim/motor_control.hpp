@@ -45,6 +45,9 @@ public:
     [[nodiscard]] double velocity_of(std::int64_t raw) const noexcept { return static_cast<double>(raw) / velocity_unit_; }
     [[nodiscard]] double torque_of(std::int64_t raw) const noexcept;
     [[nodiscard]] std::int64_t raw_velocity() const noexcept { return std::llround(velocity() * velocity_unit_); }
+    /// What 6077h shows: the mean since the exchange before. A drive measures its current far more often than the bus asks, and what a velocity
+    /// feed-forward in steps of the bus cycle makes of the torque is gone from the mean alone (assumed: no manual says how it is filtered).
+    void tell_torque() noexcept;
     /// Without an encoder nothing tells the drive what the load takes: 0.
     [[nodiscard]] std::int64_t raw_torque() const noexcept;
     /// counts/s that 607Fh and 6080h leave; infinity: no limit.
@@ -84,7 +87,11 @@ public:
     /// The power stage gives none: the field of a motor without an encoder is off.
     void release_field() noexcept;
     /// Physics of one inner step.
-    void turn(double dt) noexcept { plant_.step(dt, torque_); }
+    void turn(double dt) noexcept {
+        plant_.step(dt, torque_);
+        impulse_ += torque_ * dt;
+        since_told_ += dt;
+    }
 
 private:
     SimulatedMotor motor_;
@@ -96,6 +103,7 @@ private:
     std::optional<OpenLoopMotor> stepper_;
     Demand demand_;
     double torque_ = 0, torque_most_ = 0, torque_least_ = 0;
+    double told_torque_ = 0, impulse_ = 0, since_told_ = 0;  // N m; N m s, s since the exchange before
 };
 
 }  // namespace taktwerk::axes::sim
