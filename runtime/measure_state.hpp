@@ -15,9 +15,9 @@ namespace taktwerk::runtime {
 enum class MeasureEnd : std::uint8_t {
     none,     ///< it runs, or there never was one
     done,     ///< to its end
-    stopped,  ///< let go, stopped, the mode changed, an emergency stop
+    stopped,  ///< let go, stopped, the mode changed, the override turned down
     lease,    ///< renewals stayed out
-    alarm,    ///< of the axis
+    alarm,    ///< of the axis; an emergency stop
     refused,  ///< the axis did not take a set-point
 };
 [[nodiscard]] std::string_view name(MeasureEnd end) noexcept;
@@ -32,6 +32,9 @@ struct MeasureState {
     std::uint64_t lost = 0;                     ///< samples that nobody fetched in time, of all runs
     axes::ExcitationPlan plan;
 };
+
+/// 0..1: what is left of a velocity.
+[[nodiscard]] double velocity_override(const axes::AxisView& view) noexcept;
 
 /// `view.set_position` is where it begins. Real-time safe.
 [[nodiscard]] axes::ExcitationBounds measure_bounds(const axes::AxisConfig& config, const axes::AxisView& view, Mode mode,

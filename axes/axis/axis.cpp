@@ -75,8 +75,9 @@ void complete(AxisCore& axis) noexcept {
         axis.following.begin_anew();
     }
     if (Succession::may_complete(body, motion)) axis.succession.complete();
-    if (motion.goal.kind == Goal::Kind::given || motion.goal.kind == Goal::Kind::coupled)
-        motion.goal.former_jerk = 0;  // it has moved the axis itself
+    // It has moved the axis itself.
+    if (motion.goal.kind == Goal::Kind::given) motion.goal.former_jerk = axis.motion.given.jerk();
+    else if (motion.goal.kind == Goal::Kind::coupled) motion.goal.former_jerk = 0;
     if (axis.coupling.links.state.shown) axis.coupling.phasing.complete();
     if (body.queue.beside(SideSlot::superimposed) != 0 || motion.wants_speed != 0) {
         const bool done = axis.motion.addition.complete();

@@ -17,8 +17,9 @@ struct Goal {
     VelocityLimiter limiter = VelocityLimiter::none;
     bool goes_on = false;     ///< position: passes it with end_velocity and keeps that (MC_MoveContinuous...)
     double end_velocity = 0;  ///< u/s, signed
-    double former_jerk = 0;   ///< u/s3, of the motion before: a stop's; a coupling's, table's or feed's until it has moved the axis
-    bool kept = false;        ///< velocity: that of a motion that is over; an override counts from its next change on
+    double former_jerk =
+        0;  ///< u/s3, of the motion before: a stop's; a coupling's, table's or feed's until it has moved the axis, then that of the feed
+    bool kept = false;  ///< velocity: that of a motion that is over; an override counts from its next change on
 };
 
 struct AxisMotion {

@@ -26,6 +26,7 @@ struct AxisView {
     bool homed = false;
     bool simulated = false;
     bool online = false;                   ///< feedback is fresh enough
+    bool answered = false;                 ///< in this cycle; else the actual values are older
     Presence presence = Presence::always;  ///< of the group that its drive is in
     bool in_position = false;              ///< actual inside the in-position window of the set-point, standstill
     bool warning = false;

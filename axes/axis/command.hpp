@@ -40,7 +40,7 @@ enum class CommandKind : std::uint8_t {
     velocity_profile,      ///< TimeProfileDetails
     acceleration_profile,  ///< TimeProfileDetails
     torque,                ///< TorqueDetails
-    external,              ///< set-points by SetpointFeed until another command takes over
+    external,              ///< set-points by SetpointFeed until another command takes over; jerk = what they keep, 0 = nobody says
     // homing step by step: HomingStepDetails
     homing_step,
     abort_passive_homing,

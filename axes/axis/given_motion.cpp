@@ -137,6 +137,11 @@ double GivenMotion::base_speed(double sense) const noexcept {
     return by_table ? profile_.running().top_velocity(sense) : motion_.setpoint.base_speed(sense);
 }
 
+double GivenMotion::jerk() const noexcept {
+    const auto& command = body_.queue.active().command;
+    return command.kind == CommandKind::external ? command.jerk : 0;
+}
+
 ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
     const auto& from = motion_.setpoint.base();
     const double period = to_seconds(body_.cycle);
@@ -153,6 +158,9 @@ ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
     const double beside = std::max(0.0, motion_.setpoint.superimposed_top(sense));
     if (std::abs(next.velocity) + beside > limits.velocity_towards(sense) * (1 + 1e-9)) return ErrorId::invalid_velocity;
     if (std::abs(next.velocity - from.velocity) > change || std::abs(next.acceleration) * period > change) return ErrorId::invalid_dynamics;
+    // Who has given its word gets a stop that takes the acceleration over: it must be one that was built up with that jerk.
+    if (jerk() > 0 && std::abs(next.acceleration - from.acceleration) > jerk() * period * (1 + 1e-6) + change * 1e-9)
+        return ErrorId::invalid_dynamics;
     // Position and velocity must tell of one motion: the axis would brake from the one with the other.
     if (std::abs(mean - (next.velocity + from.velocity) / 2) > change + grain) return ErrorId::invalid_dynamics;
     if (body_.software_limits_hold()) {

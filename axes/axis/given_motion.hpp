@@ -33,6 +33,8 @@ public:
     }
     /// The newest set-point was a fed one.
     [[nodiscard]] bool follows_feed() const noexcept { return feed_.followed; }
+    /// u/s3 that a running feed keeps by its own word (AxisCommand::jerk); 0: nobody limits that of a feed or a table.
+    [[nodiscard]] double jerk() const noexcept;
 
 private:
     /// What is superimposed when the curve begins: part of its start, or beside it all the time.

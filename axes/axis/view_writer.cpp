@@ -86,6 +86,7 @@ void ViewWriter::feedback(double actual) noexcept {
     const auto& measured = axis_.measured;
     const auto& from_drive = measured.feedback;
     view_.online = measured.online();
+    view_.answered = from_drive.fresh;
     view_.in_position = axis_.following.in_position(axis_.body);
     view_.following_error = axis_.following.error();
     if (axis_.body.config.following.per_velocity > Duration::zero()) view_.following_window = axis_.following.window();

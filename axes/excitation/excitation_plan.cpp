@@ -14,6 +14,8 @@ namespace {
 constexpr double rise_first = 2.1875, rise_second = 7.5132, rise_third = 52.5;
 constexpr double no_jerk_limit = 0.01;  // s to the full acceleration where the axis has none
 constexpr double friction_span = 32;    // the highest velocity of a friction curve is so many times the lowest
+constexpr double least_looks = 8;       // cycles that a period of the cogging takes
+constexpr double friction_start = 0.5;  // s from rest to a low velocity: so gently that the torque is seen to rise until it breaks away
 constexpr double friction_time = 2;     // s at one velocity, unless a turn of the motor takes longer
 
 /// Of the order's kind, where it names none.
@@ -38,6 +40,7 @@ ExcitationPlan::ExcitationPlan(const MeasureOrder& order, const ExcitationBounds
     for (const double number : {order.velocity, order.acceleration, order.from_hz, order.to_hz, order.period})
         if (!(number >= 0) || !std::isfinite(number)) refusal_ = ExcitationRefusal::bad_number;
     if (!std::isfinite(order.distance)) refusal_ = ExcitationRefusal::bad_number;
+    if (!(bounds.velocity > 0)) refusal_ = ExcitationRefusal::no_velocity;
     if (refusal_ != ExcitationRefusal::none) return;
     fill_in();
     if (usable()) measure_path();
@@ -105,6 +108,12 @@ bool ExcitationPlan::usable() noexcept {
     // A stretch of constant velocity must be left, and a turn of it where the position counts.
     const bool cruises = order_.kind == MeasureKind::ramp || order_.kind == MeasureKind::friction || order_.kind == MeasureKind::cogging;
     if (!cruises) return true;
+    // Waves that pass between two looks are not seen.
+    if (order_.kind == MeasureKind::cogging && order_.period > 0 && order_.period < least_looks * bounds_.cycle * order_.velocity) {
+        needed_ = least_looks * bounds_.cycle * order_.velocity;
+        refusal_ = ExcitationRefusal::short_period;
+        return false;
+    }
     const double cruise = order_.kind == MeasureKind::cogging ? order_.period : 20 * bounds_.cycle * order_.velocity;
     needed_ = way_of_ramps(order_.velocity, order_.acceleration) + cruise;
     if (std::abs(order_.distance) * (1 + 1e-9) >= needed_) return true;
@@ -127,8 +136,12 @@ void ExcitationPlan::measure_path() noexcept {
         }
     }
     // Wherever it is stopped, the stop must end inside.
-    margin_ = order_.velocity * (order_.velocity / b.stop + b.stop / jerk_) / 2;
-    if (lowest_ - margin_ < b.position_min) {
+    const double stop_jerk = std::min(b.stop_jerk, jerk_);
+    margin_ = order_.velocity * (order_.velocity / b.stop + b.stop / stop_jerk) / 2;
+    // What is next to nothing divides to infinity: no path of numbers is no path.
+    if (!std::isfinite(lowest_) || !std::isfinite(highest_) || !std::isfinite(margin_) || std::isnan(duration_)) {
+        refusal_ = ExcitationRefusal::bad_number;
+    } else if (lowest_ - margin_ < b.position_min) {
         refusal_ = ExcitationRefusal::below_limit;
         needed_ = b.start - lowest_ + margin_;
         room_ = b.start - b.position_min;
@@ -143,9 +156,15 @@ void ExcitationPlan::measure_path() noexcept {
 
 std::size_t ExcitationPlan::legs() const noexcept { return of_tones() ? order_.count : std::size_t{2} * order_.count; }
 
+/// Acceleration of a friction curve's slower moves: gentle, but on no longer ramps than the fastest has.
+double ExcitationPlan::start_of(double velocity) const noexcept {
+    const double part = velocity / order_.velocity;
+    return std::min(order_.acceleration, std::max(velocity / friction_start, order_.acceleration * part * part));
+}
+
 /// How far pair `pair` of a friction curve goes: slow moves do not take for ever.
 double ExcitationPlan::reach(std::size_t, double velocity) const noexcept {
-    const double way = std::max(friction_time * velocity, order_.period) + way_of_ramps(velocity, order_.acceleration);
+    const double way = std::max(friction_time * velocity, order_.period) + way_of_ramps(velocity, start_of(velocity));
     return std::copysign(std::min(std::abs(order_.distance), way), order_.distance);
 }
 
@@ -156,6 +175,7 @@ ExcitationLeg ExcitationPlan::leg(std::size_t i) const noexcept {
     const double place = order_.count > 1 ? static_cast<double>(pair) / (order_.count - 1) : 1;
     if (order_.kind == MeasureKind::friction) {
         leg.velocity = order_.velocity * math::exp(math::log(friction_span) * (place - 1));
+        leg.acceleration = start_of(leg.velocity);
         distance = reach(pair, leg.velocity);
     } else if (order_.kind == MeasureKind::following) {
         // Fast and slow, hard and gentle in every combination: else nobody could tell the causes apart.

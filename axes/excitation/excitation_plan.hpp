@@ -12,12 +12,13 @@ namespace taktwerk::axes {
 
 /// What the axis allows now. u, u/s, u/s2, u/s3, s.
 struct ExcitationBounds {
-    double start = 0;           ///< where it stands
-    double velocity = 0;        ///< limit of the axis and of the mode
-    double usual_velocity = 0;  ///< for who names none: the slow jogging speed
-    double acceleration = 0;    ///< in whichever direction it is least, deceleration included
-    double stop = 0;            ///< deceleration of a stop
-    double jerk = 0;            ///< infinity = none
+    double start = 0;                                            ///< where it stands
+    double velocity = 0;                                         ///< limit of the axis and of the mode
+    double usual_velocity = 0;                                   ///< for who names none: the slow jogging speed
+    double acceleration = 0;                                     ///< in whichever direction it is least, deceleration included
+    double stop = 0;                                             ///< deceleration of a stop
+    double jerk = 0;                                             ///< infinity = none
+    double stop_jerk = std::numeric_limits<double>::infinity();  ///< of a stop, where it is less
     double position_min = -std::numeric_limits<double>::infinity();
     double position_max = std::numeric_limits<double>::infinity();
     double revolution = 0;  ///< u per turn of the motor; 0 = unknown
@@ -26,14 +27,16 @@ struct ExcitationBounds {
 
 enum class ExcitationRefusal : std::uint8_t {
     none,
-    no_kind,      ///< there is no such measurement
-    bad_number,   ///< negative, not finite
-    below_limit,  ///< its path would pass position_min; `needed` u are needed, `room` u are there
-    above_limit,  ///< likewise position_max
-    too_short,    ///< `needed` u of distance until there is something to measure
-    too_long,     ///< it would take `duration` s
-    frequency,    ///< from_hz, to_hz: not rising, or above `needed` Hz
-    too_many,     ///< more than `needed` repetitions
+    no_kind,       ///< there is no such measurement
+    bad_number,    ///< negative, not finite
+    below_limit,   ///< its path would pass position_min; `needed` u are needed, `room` u are there
+    above_limit,   ///< likewise position_max
+    too_short,     ///< `needed` u of distance until there is something to measure
+    too_long,      ///< it would take `duration` s
+    frequency,     ///< from_hz, to_hz: not rising, or above `needed` Hz
+    too_many,      ///< more than `needed` repetitions
+    no_velocity,   ///< the override leaves none
+    short_period,  ///< cogging: `needed` u at this velocity
 };
 
 /// One move of a plan.
@@ -85,6 +88,7 @@ private:
     void measure_path() noexcept;
     [[nodiscard]] double time_of_move(double way, double velocity, double acceleration) const noexcept;
     [[nodiscard]] double way_of_ramps(double velocity, double acceleration) const noexcept;
+    [[nodiscard]] double start_of(double velocity) const noexcept;
     [[nodiscard]] double reach(std::size_t pair, double velocity) const noexcept;
 
     MeasureOrder order_;

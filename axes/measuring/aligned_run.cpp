@@ -10,11 +10,22 @@ namespace {
 constexpr double longest_dead_time = 40;  // cycles
 constexpr std::size_t least_samples = 10;
 
+/// The first of the samples that is later than `at` cycles behind the first.
+std::span<const MeasureSample>::iterator later_than(std::span<const MeasureSample> samples, double at) {
+    const auto first = samples.front().cycle;
+    const auto is_later = [&](const MeasureSample& s) { return static_cast<double>(s.cycle - first) > at; };
+    if (at < 0) return samples.begin();
+    // Where none is missing its place is known; where some are, it stands before that.
+    const auto guess = std::min(samples.size(), static_cast<std::size_t>(at) + 1);
+    const auto place = samples.begin() + static_cast<std::ptrdiff_t>(guess);
+    if (!is_later(*(place - 1))) return place;
+    return std::partition_point(samples.begin(), place, [&](const MeasureSample& s) { return !is_later(s); });
+}
+
 /// `value` of the samples at `at` cycles behind the first, linearly between them.
 double between(std::span<const MeasureSample> samples, double MeasureSample::*value, double at) {
     const double first = static_cast<double>(samples.front().cycle);
-    const auto later = std::partition_point(samples.begin(), samples.end(),
-                                            [&](const MeasureSample& s) { return static_cast<double>(s.cycle) - first <= at; });
+    const auto later = later_than(samples, at);
     if (later == samples.begin()) return samples.front().*value;
     if (later == samples.end()) return samples.back().*value;
     const auto& before = *(later - 1);
@@ -48,8 +59,8 @@ double find_dead_time(std::span<const MeasureSample> samples) {
     constexpr double golden = 0.6180339887498949;
     for (int i = 0; i < 25; ++i) {
         const double a = high - golden * (high - low), b = low + golden * (high - low);
-        (misfit(samples, a, stride) < misfit(samples, b, stride) ? high : low) =
-            misfit(samples, a, stride) < misfit(samples, b, stride) ? b : a;
+        if (misfit(samples, a, stride) < misfit(samples, b, stride)) high = b;
+        else low = a;
     }
     return (low + high) / 2;
 }

@@ -33,29 +33,53 @@ Part whole_periods(const AlignedRun& run, LegRange range, double velocity, doubl
     // What its beginning has stirred up is left out where the way is long enough.
     const auto later = *begin + static_cast<std::size_t>(settles / run.cycle);
     if (later < end && std::floor(way(later) / period) >= std::max(1.0, std::floor(way(*begin) / period))) begin = later;
-    const auto periods = static_cast<std::size_t>(std::floor(way(*begin) / period * (1 + 1e-6)));
-    if (periods == 0) return {};
+    const double whole = std::floor(way(*begin) / period * (1 + 1e-6));
+    if (!(whole >= 1) || whole > static_cast<double>(end - *begin)) return {};  // none, or more than there are looks at them
+    const auto periods = static_cast<std::size_t>(whole);
     while (end > *begin + 2 && std::abs(run.actual[end - 2] - run.actual[*begin]) >= static_cast<double>(periods) * period) --end;
     return {*begin, end, periods};
 }
 
-/// Amplitude and phase of the wave `order`, over the position.
-std::complex<double> wave(const AlignedRun& run, const Part& part, double period, int order, const auto& value) {
-    std::complex<double> sum = 0;
-    double mean = 0, length = 0;
-    for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
-        const double step = run.actual[i + 1] - run.actual[i];
-        mean += value(i) * step, length += step;
+/// What is drawn over the position of one part, gathered at places of the period: the same for every wave, however long the part.
+class Gathered {
+public:
+    Gathered(const AlignedRun& run, const Part& part, double period, const auto& value) : sums_(places) {
+        double mean = 0;
+        for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
+            const double step = run.actual[i + 1] - run.actual[i];
+            mean += (value(i) + value(i + 1)) / 2 * step, length_ += step;
+        }
+        if (length_ == 0) return;
+        mean /= length_;
+        for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
+            // Shared between the two places that it lies between: a place alone would be a step, with waves of its own.
+            const double turn = (run.actual[i + 1] + run.actual[i]) / 2 / period;
+            const double at = (turn - std::floor(turn)) * places, before = std::floor(at);
+            const double share = ((value(i) + value(i + 1)) / 2 - mean) * (run.actual[i + 1] - run.actual[i]);
+            const auto place = static_cast<std::size_t>(before) % places;
+            sums_[place] += share * (1 - (at - before));
+            sums_[(place + 1) % places] += share * (at - before);
+        }
     }
-    if (length == 0) return 0;
-    mean /= length;
-    for (std::size_t i = part.begin; i + 1 < part.end; ++i) {
-        const double step = run.actual[i + 1] - run.actual[i], at = (run.actual[i + 1] + run.actual[i]) / 2;
-        const double middle = (value(i) + value(i + 1)) / 2 - mean;
-        sum += middle * step * std::polar(1.0, -2 * std::numbers::pi * order * at / period);
+    /// Amplitude and phase of the wave `order`.
+    [[nodiscard]] std::complex<double> wave(std::size_t order) const {
+        static const auto turns = [] {
+            std::vector<std::complex<double>> out;
+            for (std::size_t i = 0; i < places; ++i)
+                out.push_back(std::polar(1.0, -2 * std::numbers::pi * static_cast<double>(i) / places));
+            return out;
+        }();
+        if (length_ == 0) return 0;
+        std::complex<double> sum = 0;
+        for (std::size_t i = 0; i < places; ++i) sum += sums_[i] * turns[order * i % places];
+        return 2.0 * sum / length_;
     }
-    return 2.0 * sum / length;
-}
+
+private:
+    static constexpr std::size_t places = 4096;  // 40 in a wave of the highest order: a thousandth of its amplitude
+    std::vector<double> sums_;
+    double length_ = 0;
+};
 
 }  // namespace
 
@@ -75,17 +99,22 @@ CoggingResult cogging(const AlignedRun& run, const ExcitationPlan& plan) {
         return out;
     }
     const double way = out.velocity * run.cycle;  // between two samples
-    const int highest = std::clamp(static_cast<int>(out.period / way / 4), 1, most_harmonics);
+    const int highest = static_cast<int>(std::clamp(out.period / way / 4, 1.0, static_cast<double>(most_harmonics)));
     const auto count = static_cast<double>(parts.size());
+    std::vector<Gathered> torques, errors;
+    for (const auto& part : parts) {
+        torques.emplace_back(run, part, out.period, [&](std::size_t i) { return run.torque[i]; });
+        errors.emplace_back(run, part, out.period, [&](std::size_t i) { return run.reference[i] - run.actual[i]; });
+    }
     double scatter = 0;
     for (int order = 1; order <= highest; ++order) {
         std::complex<double> torque = 0, error = 0;
         double power = 0;
-        for (const auto& part : parts) {
-            const auto one = wave(run, part, out.period, order, [&](std::size_t i) { return run.torque[i]; });
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto one = torques[i].wave(static_cast<std::size_t>(order));
             torque += one / count;
             power += std::norm(one) / count;
-            error += wave(run, part, out.period, order, [&](std::size_t i) { return run.reference[i] - run.actual[i]; }) / count;
+            error += errors[i].wave(static_cast<std::size_t>(order)) / count;
         }
         scatter += std::max(0.0, power - std::norm(torque));
         const double omega = 2 * std::numbers::pi * order * out.velocity / out.period;

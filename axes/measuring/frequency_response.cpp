@@ -107,10 +107,12 @@ LoopMargins margins_of(std::span<const FrequencyPoint> points) {
         const auto falls = [&](const std::vector<double>& v, double level) { return v[i - 1] > level && v[i] <= level; };
         if (falls(open.level, 0)) {  // the last crossing counts: behind it the loop does nothing any more
             const double f = crossing(open.frequency[i - 1], open.level[i - 1], open.frequency[i], open.level[i], 0);
-            out.phase = Margin{180 + open.phase_at(f, i), f};
+            out.phase = Margin{std::remainder(180 + open.phase_at(f, i), 360), f};
         }
-        if (!out.gain && falls(open.phase, -180)) {
-            const double f = crossing(open.frequency[i - 1], open.phase[i - 1], open.frequency[i], open.phase[i], -180);
+        // Phases repeat after a turn, and the first has been taken for what it may not be.
+        const double opposite = 360 * std::floor((open.phase[i - 1] + 180) / 360) - 180;
+        if (!out.gain && falls(open.phase, opposite)) {
+            const double f = crossing(open.frequency[i - 1], open.phase[i - 1], open.frequency[i], open.phase[i], opposite);
             out.gain = Margin{-open.level_at(f, i), f};
         }
     }

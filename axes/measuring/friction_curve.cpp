@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "axes/measuring/least_squares.hpp"
 #include "axes/measuring/step_response.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double stirred = 0.1;  // s at constant velocity before the torque counts, or half of the time there
 constexpr std::size_t least_steady = 10;
+constexpr double leaping = 4e-3;  // s
 
 struct Steady {
     std::size_t begin = 0, end = 0;
@@ -36,15 +38,24 @@ Steady steady(const AlignedRun& run, LegRange range, double velocity, double per
     return out;
 }
 
-/// The greatest torque in the sense of the motion until the motor has moved by more than the encoder's noise.
-double torque_before_motion(const AlignedRun& run, LegRange range, double way, double little) {
-    double most = -HUGE_VAL;
-    for (std::size_t i = range.begin + 1; i + 1 < range.end && !run.holds[i]; ++i) {
-        // The smaller of two: one sample may be noise.
-        most = std::max(most, std::min(way * run.torque[i], way * run.torque[i - 1]));
-        if (way * (run.actual[i] - run.actual[range.begin]) > little) break;
-    }
-    return most;
+/// The torque in the sense of the motion at which the motor begins to move: the most of the last look at which it had not moved by a count, and the
+/// next, in which it may have broken away and the torque fallen. That it moved at all is known only `little` later. Nothing: it never did.
+std::optional<double> torque_at_start(const AlignedRun& run, LegRange range, double way, double count, double little) {
+    std::size_t moved = range.begin;
+    const auto gone = [&](std::size_t i) { return way * (run.actual[i] - run.actual[range.begin]); };
+    while (moved < range.end && !run.holds[moved] && gone(moved) <= little) ++moved;
+    if (moved == range.end || run.holds[moved]) return std::nullopt;
+    std::size_t still = moved;
+    while (still > range.begin && gone(still) > 0.5 * count) --still;
+    // Set-points of whole counts make the torque of a feed-forward leap from cycle to cycle, above all of short ones.
+    const auto looks = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(leaping / run.cycle)));
+    const auto mean_until = [&](std::size_t last) {
+        const auto first = last - std::min(looks - 1, last - range.begin);
+        double sum = 0;
+        for (std::size_t i = first; i <= last; ++i) sum += way * run.torque[i];
+        return sum / static_cast<double>(last - first + 1);
+    };
+    return std::max(mean_until(still), mean_until(still + 1));
 }
 
 }  // namespace
@@ -53,19 +64,16 @@ FrictionCurve friction_curve(const AlignedRun& run, const ExcitationPlan& plan, 
     FrictionCurve out;
     const double resolution = resolution_of(run);
     double highest = 0, start_up[2] = {0, 0}, start_down[2] = {0, 0};
-    std::size_t starts = 0;
     for (std::size_t leg = 0; leg < plan.legs(); ++leg) {
         const auto range = range_of(run, leg);
         if (range.end <= range.begin) break;
         const auto planned = plan.leg(leg);
         const double way = planned.target > (leg == 0 ? plan.bounds().start : plan.leg(leg - 1).target) ? 1 : -1;
         const auto part = steady(run, range, planned.velocity, plan.order().period);
-        // From rest, slowly: the two slowest pairs.
-        if (leg < 4) {
-            const double torque = torque_before_motion(run, range, way, 4 * resolution);
+        // From rest, slowly: the slowest pairs.
+        if (leg < (plan.order().count < 4 ? 2 : 4)) {
             auto& of = way > 0 ? start_up : start_down;
-            of[0] += torque, of[1] += 1;
-            ++starts;
+            if (const auto torque = torque_at_start(run, range, way, resolution, 4 * resolution)) of[0] += *torque, of[1] += 1;
         }
         if (part.end - part.begin < least_steady) continue;
         FrictionPoint point{way * planned.velocity, 0, 0, 0};
@@ -99,7 +107,7 @@ FrictionCurve friction_curve(const AlignedRun& run, const ExcitationPlan& plan, 
     };
     of_direction(1, out.coulomb_positive, out.viscous_positive);
     of_direction(-1, out.coulomb_negative, out.viscous_negative);
-    if (starts == 4 && start_up[1] > 0 && start_down[1] > 0) {
+    if (start_up[1] > 0 && start_down[1] > 0) {
         out.breakaway_positive = {start_up[0] / start_up[1] - out.gravity.value, fit.residual, true};
         out.breakaway_negative = {start_down[0] / start_down[1] + out.gravity.value, fit.residual, true};
     }

@@ -8,7 +8,7 @@ using axes::ExcitationRefusal;
 
 namespace {
 
-constexpr std::size_t most_samples = 2'000'000;  ///< more than the longest plan at a cycle of 250 us
+constexpr std::size_t most_samples = 2'000'000;  ///< of all axes together; more than the longest plan at a cycle of 250 us
 
 Error refused(const std::string& axis, std::string what, std::string remedy) {
     return {"measure.refused", "axis " + axis, std::move(what), std::move(remedy)};
@@ -45,13 +45,21 @@ Error explain(const axes::ExcitationPlan& plan, const std::string& axis, const s
         case ExcitationRefusal::too_many:
             return refused(axis, fmt::format("a count of {} is too much", plan.order().count),
                            fmt::format("Give at most {:g}.", plan.needed()));
+        case ExcitationRefusal::no_velocity:
+            return refused(axis, "the override of its velocity is 0", "Set the override to the part of the velocity that it may have.");
+        case ExcitationRefusal::short_period:
+            return refused(axis,
+                           fmt::format("a period of {:g} {unit} passes unseen at {:g} {unit}/s", plan.order().period, plan.order().velocity,
+                                       fmt::arg("unit", unit)),
+                           fmt::format("Give a period of {:g} {} or more, or a lower velocity.", plan.needed(), unit));
         case ExcitationRefusal::no_kind:
             return refused(axis, "nothing says what is to be measured",
                            "Give \"kind\": step, ramp, friction, sweep, following or cogging.");
         case ExcitationRefusal::bad_number:
         case ExcitationRefusal::none: break;
     }
-    return refused(axis, "a number of it is negative or not finite", "Give numbers of 0 or more; only a distance may be negative.");
+    return refused(axis, "a number of it is negative, not finite, or next to nothing",
+                   "Give numbers of 0 or more; only a distance may be negative.");
 }
 
 }  // namespace
@@ -74,14 +82,33 @@ void Measurements::step(const runtime::Snapshot* snapshot) {
         if (sample.run != filling_) {  // the snapshot is at least as new as its first sample
             filling_ = sample.run;
             axis_ = snapshot->measure.run == sample.run ? snapshot->measure.axis : 0xFFFF;
-            if (axis_ != 0xFFFF) runs_[axis_] = {snapshot->measure, {snapshot->measure.plan, {}}};
+            if (axis_ != 0xFFFF) begin_run(snapshot->measure);
         }
         if (axis_ == 0xFFFF) continue;
         auto& kept = runs_[axis_].samples.samples;
-        if (kept.size() < most_samples) kept.push_back(sample);
+        if (kept.size() < kept.capacity()) kept.push_back(sample);
     }
     if (snapshot == nullptr || axis_ == 0xFFFF || snapshot->measure.run != filling_) return;
     runs_[axis_].state = snapshot->measure;
+}
+
+/// Older runs make room for it, the oldest first; the room for its samples is taken at once, that nothing is moved on the way.
+void Measurements::begin_run(const runtime::MeasureState& state) {
+    constexpr double longer = 1.5;  // a plan knows its time only nearly
+    const auto expected = std::min(static_cast<double>(most_samples), state.plan.duration() * longer / state.plan.bounds().cycle + 1000);
+    runs_[state.axis] = {state, {state.plan, {}}, false};
+    auto room = static_cast<std::size_t>(expected);
+    for (const auto& [axis, run] : runs_) room += run.samples.samples.capacity();
+    while (room > most_samples) {
+        Run* oldest = nullptr;
+        for (auto& [axis, run] : runs_)
+            if (run.samples.samples.capacity() > 0 && (oldest == nullptr || run.state.run < oldest->state.run)) oldest = &run;
+        if (oldest == nullptr) break;
+        room -= oldest->samples.samples.capacity();
+        oldest->samples.samples = {};
+        oldest->forgotten = true;
+    }
+    runs_[state.axis].samples.samples.reserve(static_cast<std::size_t>(expected));
 }
 
 const Measurements::Run* Measurements::newest(std::uint16_t axis) const {

@@ -20,6 +20,7 @@ public:
     struct Run {
         runtime::MeasureState state;
         axes::measuring::SampleRun samples;
+        bool forgotten = false;  ///< its samples had to make room for newer ones
     };
 
     explicit Measurements(MachineLink& machine) : machine_(machine) {}
@@ -33,6 +34,8 @@ public:
     [[nodiscard]] const Run* newest(std::uint16_t axis) const;
 
 private:
+    void begin_run(const runtime::MeasureState& state);
+
     MachineLink& machine_;
     std::map<std::uint16_t, Run> runs_;
     std::uint32_t filling_ = 0;  // number of the run whose samples come

@@ -250,9 +250,12 @@ std::string result_json(const Measurements::Run& run, const axes::AxisConfig& co
              {"plan", Json::parse(plan_json(plan, config.unit))}};
     out["samples"] = run.samples.samples.size();
     if (run.state.running) return dumped(std::move(out));
-    auto samples = run.samples;
-    axes::measuring::unwrap(samples.samples, config.modulo);
-    const auto aligned = axes::measuring::align(samples);
+    const auto unwrapped = [&] {
+        auto samples = run.samples;
+        axes::measuring::unwrap(samples.samples, config.modulo);
+        return axes::measuring::align(samples);
+    };
+    const auto aligned = config.modulo > 0 ? unwrapped() : axes::measuring::align(run.samples);
     out["lost"] = aligned.lost;
     out["dead_time_s"] = aligned.dead_time;
     const double settled = window > 0 ? window : config.windows.in_position;

@@ -293,7 +293,15 @@ bool JsonRequests::answer_measure(std::string_view cmd, ConnectionId connection,
     const auto* config = machine_.axis_config(*axis);
     if (run == nullptr || config == nullptr)
         return refused({"measure.none", "axis " + name, "it was not measured since the machine was started", "Measure it first."});
-    return with(result_json(*run, *config, window));
+    if (run->forgotten)
+        return refused({"measure.forgotten", "axis " + name, "the samples of its measurement have made room for newer ones of other axes",
+                        "Measure it again."});
+    if (run->state.running) return with(result_json(*run, *config, window));
+    // Asked again and again, it is worked out once: what is asked here holds up everybody else's.
+    auto& told = measured_[*axis];
+    if (told.run != run->state.run || told.samples != run->samples.samples.size() || told.window != window)
+        told = {run->state.run, run->samples.samples.size(), window, result_json(*run, *config, window)};
+    return with(told.text);
 }
 
 void JsonRequests::ask_history(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {

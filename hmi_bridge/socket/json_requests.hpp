@@ -102,6 +102,14 @@ private:
     About about_;
     std::optional<Instant> began_;
     Measurements measurements_;
+    /// What the newest measurement of an axis has come to, as it was answered.
+    struct Measured {
+        std::uint32_t run = 0;
+        std::size_t samples = 0;
+        double window = 0;
+        std::string text;
+    };
+    std::map<std::uint16_t, Measured> measured_;
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;

@@ -15,6 +15,7 @@ Verdict verdict_of(ExcitationRefusal refusal) noexcept {
         case ExcitationRefusal::none: return {};
         case ExcitationRefusal::below_limit:
         case ExcitationRefusal::above_limit: return {Answer::refused_by_axis, ErrorId::beyond_software_limit};
+        case ExcitationRefusal::no_velocity: return {Answer::not_possible_now};
         default: return {Answer::bad_value};
     }
 }
@@ -48,13 +49,16 @@ Verdict Measuring::press(const OperatorCommand& command, std::size_t index) noex
 
     axes::AxisCommand wanted;
     wanted.kind = axes::CommandKind::external;
+    wanted.jerk = plan.jerk();  // else whatever stops it would drop its acceleration
     const auto submitted = body_.requests.submit({static_cast<std::uint16_t>(index)}, wanted, command.owner);
     if (submitted.error != ErrorId::none) return runtime::verdict_of(submitted.error);
     command_ = submitted.id;
     owner_ = command.owner;
     client_ = command.client;
     renewed_ = body_.now;
+    begins_ = true;
     unwrapped_ = 0;
+    override_ = velocity_override(view);
     excitation_ = axes::Excitation(plan);
     state_ = {state_.run + 1, static_cast<std::uint16_t>(index), true, MeasureEnd::none, ErrorId::none, 0, state_.lost, plan};
     return {};
@@ -87,6 +91,12 @@ void Measuring::step() noexcept {
     if (status != axes::CommandStatus::active && status != axes::CommandStatus::in_target && status != axes::CommandStatus::queued)
         return end(axis.view().state == AxisState::ErrorStop ? MeasureEnd::alarm : MeasureEnd::stopped);
     if (body_.now - renewed_ >= axis.config().patience.jog_lease) return end(MeasureEnd::lease);
+    // Fed set-points take no override. Who turns it down wants it slower now, and a measurement that changes on the way is none.
+    if (velocity_override(axis.view()) < override_) {
+        (void)hands_.stop(state_.axis);
+        return end(MeasureEnd::stopped);
+    }
+    if (begins_) return;  // the axis takes the command over as it plans, and what it was fed before is lost
     axes::MotionState next;
     const bool goes_on = excitation_.step(next);
     state_.elapsed = excitation_.elapsed();
@@ -96,13 +106,17 @@ void Measuring::step() noexcept {
 
 void Measuring::keep() noexcept {
     if (!state_.running) return;
+    if (begins_) {
+        begins_ = false;
+        return;
+    }
     const auto& view = body_.axes[state_.axis].view();
     axes::MeasureSample sample;
     sample.cycle = body_.cycles;
     sample.run = state_.run;
     sample.leg = static_cast<std::uint16_t>(excitation_.leg());
     sample.holds = excitation_.holds();
-    sample.fresh = view.online;
+    sample.fresh = view.online && view.answered;
     sample.set_position = view.set_position;
     sample.set_velocity = view.set_velocity;
     sample.set_acceleration = view.set_acceleration;

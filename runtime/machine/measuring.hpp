@@ -45,6 +45,8 @@ private:
     axes::Owner owner_ = axes::Owner::none;
     std::uint32_t client_ = 0;
     Instant renewed_{};
+    bool begins_ = false;   // pressed in this cycle
+    double override_ = 1;   // of the velocity, as it began
     double unwrapped_ = 0;  // u: so many moduli more the axis calls the same place by
 };
 

@@ -112,6 +112,39 @@ TEST_F(MeasureRequests, TheResultHasNumbersAndBoundedCurves) {
     EXPECT_EQ(ask(R"({"cmd":"state"})")["state"]["measure"]["run"], 1);
 }
 
+// Five minutes at 250 us are 1.2 million samples: two such runs are more than is kept of all axes together, and the older one goes.
+TEST_F(MeasureRequests, OlderRunsMakeRoomForNewerOnes) {
+    axes::ExcitationBounds bounds{.start = 400, .velocity = 200, .usual_velocity = 20, .acceleration = 5000, .stop = 5000, .jerk = 100000};
+    bounds.cycle = 250e-6;
+    axes::MeasureOrder order{axes::MeasureKind::ramp};
+    order.distance = 290, order.velocity = 20, order.count = 10;
+    const axes::ExcitationPlan plan(order, bounds);
+    ASSERT_GT(plan.duration(), 250);
+    for (const std::uint16_t axis : {0, 1}) {
+        const auto run = static_cast<std::uint32_t>(axis + 1);
+        for (std::uint64_t cycle = 1; cycle <= 30; ++cycle) {
+            axes::MeasureSample sample;
+            sample.run = run, sample.cycle = cycle, sample.fresh = true;
+            machine.samples.push_back(sample);
+        }
+        machine.snapshot.measure = {run, axis, false, runtime::MeasureEnd::stopped, axes::ErrorId::none, 1, 0, plan};
+        requests.step(now);
+        const auto& name = machine.layout().axes[axis].name;
+        EXPECT_EQ(ask(R"({"cmd":"measure_result","axis":")" + name + R"("})")["measure_result"]["samples"], 30);
+    }
+    const auto gone = ask(R"({"cmd":"measure_result","axis":"x"})");
+    EXPECT_EQ(gone["error"]["code"], "measure.forgotten") << gone;
+}
+
+TEST_F(MeasureRequests, AnOverrideOfNothingIsToldBeforeAnythingMoves) {
+    machine.snapshot.axes[0].operators_override = 0;
+    const auto answer = ask(R"({"cmd":"measure_plan","axis":"x","kind":"step"})");
+    EXPECT_EQ(answer["error"]["code"], "measure.refused");
+    EXPECT_THAT(answer["error"]["what"].get<std::string>(), HasSubstr("override"));
+    machine.snapshot.axes[0].operators_override = 0.5;
+    EXPECT_EQ(ask(R"({"cmd":"measure_plan","axis":"x","kind":"step","distance":-20,"velocity":1000})")["measure_plan"]["velocity"], 22.5);
+}
+
 TEST_F(MeasureRequests, EveryKindHasAResult) {
     for (const auto kind : {axes::MeasureKind::step, axes::MeasureKind::friction, axes::MeasureKind::following, axes::MeasureKind::sweep,
                             axes::MeasureKind::cogging}) {

@@ -184,6 +184,45 @@ TEST(ExcitationPlan, UnusableOrdersSayWhy) {
     EXPECT_EQ(refusal(order), ExcitationRefusal::too_many);
 }
 
+// Numbers next to nothing divide to infinity: a path of them is refused, also where no limit is in its way.
+TEST(ExcitationPlan, WhatIsNextToNothingIsNoPath) {
+    auto free = rail();
+    free.position_min = -std::numeric_limits<double>::infinity(), free.position_max = std::numeric_limits<double>::infinity();
+    free.jerk = std::numeric_limits<double>::infinity();
+    constexpr double least = std::numeric_limits<double>::denorm_min();
+    MeasureOrder order{MeasureKind::sweep};
+    order.from_hz = least, order.to_hz = 50;
+    EXPECT_EQ(ExcitationPlan(order, free).refusal(), ExcitationRefusal::bad_number);
+    order = {MeasureKind::step};
+    order.acceleration = least, order.distance = 1;
+    EXPECT_EQ(ExcitationPlan(order, free).refusal(), ExcitationRefusal::bad_number);
+    // 50 mm/s pass 0.4 mm in eight cycles.
+    order = {MeasureKind::cogging};
+    order.velocity = 50, order.period = 0.39, order.distance = 40;
+    const ExcitationPlan unseen(order, free);
+    EXPECT_EQ(unseen.refusal(), ExcitationRefusal::short_period);
+    EXPECT_NEAR(unseen.needed(), 0.4, 1e-12);
+    order.period = 0.41;
+    EXPECT_EQ(ExcitationPlan(order, free).refusal(), ExcitationRefusal::none);
+}
+
+TEST(ExcitationPlan, AnOverrideOfNothingLeavesNothing) {
+    auto bounds = rail();
+    bounds.velocity = bounds.usual_velocity = 0;
+    EXPECT_EQ(ExcitationPlan({MeasureKind::step}, bounds).refusal(), ExcitationRefusal::no_velocity);
+}
+
+// A stop with a jerk of 20000 mm/s3 instead of 90000 needs 100 * (100 / 5000 + 5000 / 20000) / 2 = 13.5 mm.
+TEST(ExcitationPlan, ASoftStopNeedsMoreRoom) {
+    auto bounds = rail();
+    bounds.stop_jerk = 20000;
+    MeasureOrder order{MeasureKind::step};
+    order.distance = -90, order.velocity = 100;
+    const ExcitationPlan plan(order, bounds);
+    EXPECT_NEAR(plan.margin(), 13.5, 1e-9);
+    EXPECT_EQ(plan.refusal(), ExcitationRefusal::below_limit);
+}
+
 // A sine of amplitude A has A w^2: above the frequency at which that is the limit the amplitude falls.
 TEST(ExcitationPlan, ASweepGetsSmallerWhereTheLimitsWantIt) {
     MeasureOrder order{MeasureKind::sweep};

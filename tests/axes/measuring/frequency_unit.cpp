@@ -74,6 +74,23 @@ TEST(FrequencyResponse, ResonanceAndBandwidthAreThoseOfTheLoop) {
     EXPECT_NEAR(m.phase_bandwidth->value, 20, 0.2);
 }
 
+// With feed-forward L = T / (1 - T) begins with a phase that may be a turn away. |L| is 1 at 20 sqrt(2) Hz, half way from 170 to 200 degrees: 185 are -175, a
+// margin of 5. From 200 to 160 it passes 180, which is -180, at 40 sqrt(2) Hz and at -(6.02 + 13.98) / 2 dB.
+TEST(FrequencyResponse, MarginsAreThoseOfAPhaseWithinATurn) {
+    const auto at = [](double f, double gain, double degrees) {
+        FrequencyPoint p;
+        p.frequency = f, p.open = std::polar(gain, degrees * pi / 180), p.open_usable = true;
+        return p;
+    };
+    const std::vector points{at(10, 4, 150), at(20, 2, 170), at(40, 0.5, 200), at(80, 0.2, 160)};
+    const auto m = margins_of(points);
+    ASSERT_TRUE(m.phase && m.gain);
+    EXPECT_NEAR(m.phase->value, 5, 0.01);
+    EXPECT_NEAR(m.phase->frequency, 28.28, 0.01);
+    EXPECT_NEAR(m.gain->value, 10, 0.01);
+    EXPECT_NEAR(m.gain->frequency, 56.57, 0.01);
+}
+
 TEST(FrequencyResponse, NoiseAndQuantisationWidenWhatItSaysOfItself) {
     std::mt19937_64 dice(11);
     std::normal_distribution<> noise(0, 2e-3);
