@@ -93,7 +93,55 @@ protected:
     std::unique_ptr<Child> machine_;
 };
 
-// The 40 lines of the SDK, built as their reader builds them: they show the machine's number to the last digit, and say when it is old.
+// Anybody on the computer may send anything: a datagram that ends before its channel does (LCM takes its data for 4 GB), a fragment that promises as
+// much, a type whose counts lie. Whoever listens lives on, and its terminal shows no bytes of theirs.
+TEST_F(Lcm, HostileDatagramsEndNobody) {
+    if (!installed("python3")) GTEST_SKIP() << "python3 sends the datagrams";
+    start_machine();
+    const auto log = path("hostile.lcmlog");
+    Child spy(network_->in({taktwerk, "lcm", "spy", ".*", "--json"}));
+    Child table(network_->in({taktwerk, "lcm", "spy"}));
+    Child recorder(network_->in({taktwerk, "lcm", "record", log}));
+    ASSERT_TRUE(spy.says("HEARTBEAT", patience) && table.says("HEARTBEAT", patience) && recorder.says("recording", patience));
+    std::ofstream(path("hostile.py")) << R"(
+import socket, struct, time
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+def send(data): s.sendto(data, ("239.255.76.67", 7667))
+def short(channel, data): return struct.pack(">II", 0x4C433032, 1) + channel + data
+for n in range(200):
+    send(short(b"TAKTWERK_MINIMAL_AXIS_STATE", b""))  # no NUL behind the channel
+    send(short(b"\x1b[31mRED\0", bytes(40)))
+    send(short(b"TAKTWERK_MINIMAL_IO_STATE\0", bytes([n]) * (n % 60)))
+    if n % 20 == 0: time.sleep(0.01)
+for size in (0xFFFFFFFF, 0x7FFFFFFF):
+    send(struct.pack(">IIIIHH", 0x4C433033, size, size, 0, 0, 1) + b"BIG\0" + b"x" * 40)
+for n in range(40):
+    send(short(b"LAST\0", b"12345678"))
+    time.sleep(0.05)
+)";
+    Child sender(network_->in({"python3", path("hostile.py")}));
+    ASSERT_EQ(sender.wait(patience), 0) << sender.text();
+    EXPECT_TRUE(spy.says("\"channel\":\"LAST\"", patience)) << "it has outlived them";
+    EXPECT_TRUE(table.says("LAST", patience));
+    EXPECT_THAT(table.text(), Not(HasSubstr("\x1b[31m")));
+    for (auto* child : {&spy, &table, &recorder}) {
+        child->signal(SIGINT);
+        EXPECT_EQ(child->wait(patience), exit_ok);
+    }
+    EXPECT_THAT(recorder.text(), Not(HasSubstr("are full")));
+    EXPECT_EQ(channels_of(log).count("LAST"), 1u);
+}
+
+// What reads the table may go: `taktwerk lcm spy | head -2` ends.
+TEST_F(Lcm, SpyEndsWhenNobodyReadsIt) {
+    start_machine();
+    Child pipe(network_->in({"sh", "-c", std::string(taktwerk) + " lcm spy | head -2"}));
+    EXPECT_EQ(pipe.wait(patience), 0) << pipe.text();
+    EXPECT_THAT(pipe.text(), HasSubstr("channel"));
+}
+
+// The 41 lines of the SDK, built as their reader builds them: they show the machine's number to the last digit, and say when it is old.
 TEST_F(Lcm, TheExampleOfTheSdkShowsPositionsAndSaysStale) {
     const testing::InstalledSdk sdk;
     for (const auto& entry : fs::directory_iterator(sdk.prefix() / "share/taktwerk/examples/lcm"))
