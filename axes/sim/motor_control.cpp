@@ -46,7 +46,7 @@ double MotorControl::torque_of(std::int64_t raw) const noexcept {
 }
 
 void MotorControl::tell_torque() noexcept {
-    told_torque_ = since_told_ > 0 ? impulse_ / since_told_ : torque_;
+    told_torque_ = since_told_ > 0 && torque_ != 0 ? impulse_ / since_told_ : torque_;  // without power there is none, at once
     impulse_ = since_told_ = 0;
 }
 
