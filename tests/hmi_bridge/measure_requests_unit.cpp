@@ -120,7 +120,7 @@ TEST_F(MeasureRequests, OlderRunsMakeRoomForNewerOnes) {
     order.distance = 290, order.velocity = 20, order.count = 10;
     const axes::ExcitationPlan plan(order, bounds);
     ASSERT_GT(plan.duration(), 250);
-    for (const std::uint16_t axis : {0, 1}) {
+    for (std::uint16_t axis = 0; axis < 2; ++axis) {
         const auto run = static_cast<std::uint32_t>(axis + 1);
         for (std::uint64_t cycle = 1; cycle <= 30; ++cycle) {
             axes::MeasureSample sample;

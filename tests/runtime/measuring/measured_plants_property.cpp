@@ -86,10 +86,10 @@ TEST(MeasuredPlants, BreakawayIsThatOfThePlant) {
         const auto run = m.measure(order_of(MeasureKind::friction, 40, 64, 1000, 5));
         const auto f = friction_curve(align(run), run.plan, no_limit);
         ASSERT_TRUE(f.breakaway_positive.known && f.breakaway_negative.known);
-        // Seen once a cycle while a gentle start raises the torque, and only from the first count on that the motor has moved: within a quarter of the
-        // Coulomb friction.
-        EXPECT_NEAR(f.breakaway_positive.value, 0.08 * factor, 0.25 * 0.08) << factor;
-        EXPECT_NEAR(f.breakaway_negative.value, 0.08 * factor, 0.25 * 0.08) << factor;
+        // Seen only from the first count on that the motor has moved: where it breaks away, its torque has begun to fall by then, and the mean of 4 ms
+        // has some of that. Within a third of the Coulomb friction.
+        EXPECT_NEAR(f.breakaway_positive.value, 0.08 * factor, 0.08 / 3) << factor;
+        EXPECT_NEAR(f.breakaway_negative.value, 0.08 * factor, 0.08 / 3) << factor;
     }
 }
 
