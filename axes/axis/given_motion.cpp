@@ -158,6 +158,10 @@ ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
     const double beside = std::max(0.0, motion_.setpoint.superimposed_top(sense));
     if (std::abs(next.velocity) + beside > limits.velocity_towards(sense) * (1 + 1e-9)) return ErrorId::invalid_velocity;
     if (std::abs(next.velocity - from.velocity) > change || std::abs(next.acceleration) * period > change) return ErrorId::invalid_dynamics;
+    // A stop takes a declared jerk's time to release what speeds up: not beyond the limit.
+    if (jerk() > 0 && next.velocity * next.acceleration > 0 &&
+        std::abs(next.velocity) + next.acceleration * next.acceleration / (2 * jerk()) > most(next.velocity))
+        return ErrorId::invalid_velocity;
     // Who has given its word gets a stop that takes the acceleration over: it must be one that was built up with that jerk.
     if (jerk() > 0 && std::abs(next.acceleration - from.acceleration) > jerk() * period * (1 + 1e-6) + change * 1e-9)
         return ErrorId::invalid_dynamics;
