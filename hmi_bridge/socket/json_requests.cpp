@@ -15,6 +15,7 @@
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/answer_line.hpp"
 #include "hmi_bridge/socket/json_history.hpp"
+#include "hmi_bridge/socket/json_layout.hpp"
 #include "hmi_bridge/socket/json_measure.hpp"
 #include "hmi_bridge/socket/json_state.hpp"
 #include "hmi_bridge/socket/peer_name.hpp"

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "axes/axis/parameters.hpp"
+#include "hmi_bridge/socket/json_layout.hpp"
 #include "hmi_bridge/socket/json_state.hpp"
 #include "hmi_bridge/socket/json_writer.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
