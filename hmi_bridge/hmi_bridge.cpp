@@ -1,5 +1,8 @@
 #include "hmi_bridge/hmi_bridge.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "hmi_bridge/lcm/lcm_bus.hpp"
@@ -7,6 +10,14 @@
 #include "hmi_bridge/socket/socket_path.hpp"
 
 namespace taktwerk::hmi {
+namespace {
+
+std::string why_no_lcm(const HmiConfig& config, const std::optional<Error>& problem) {
+    if (!config.lcm) return "the machine file says `lcm: {enabled: false}`";
+    return problem ? problem->what + ". " + problem->remedy : std::string{};
+}
+
+}  // namespace
 
 Result<std::unique_ptr<HmiBridge>> HmiBridge::open(const HmiConfig& config, MachineLink& machine, HmiOptions options) {
     if (auto errors = check(config); !errors.empty()) return errors.front();
@@ -59,9 +70,14 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
     requests_.set_log(std::move(options.log_tail));
     requests_.set_recorder(options.recorder);
     requests_.set_views(std::move(options.views));
+    JsonRequests::LcmTold lcm{config.lcm ? config.lcm_url : std::string{}, why_no_lcm(config, lcm_problem_), config.rate_hz, 0};
+    if (bus_) lcm.run = std::max<std::int64_t>(options.wall_utime(), 1);
+    const auto run = lcm.run;
+    requests_.set_lcm(std::move(lcm));
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);
+    publisher_->publish_whole_states(run, [this](ClientId client) { return gateway_.name_of(client); });
     if (commands) bus_->subscribe(channels_.command(), [this](std::span<const std::byte> message) { receiver_.receive(message, now_); });
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 struct HmiOptions {
     int rate = 20;
-    std::string listen, page, audit, users, role = "engineer";
+    std::string listen, page, audit, users, role = "engineer", source = "auto";
     std::vector<std::string> machines, names, proxies;
     bool end_with_input = false;
 };
@@ -98,6 +98,8 @@ int serve(const HmiOptions& options) {
     server_options.version = sdk_version;
     server_options.end_with_input = options.end_with_input;
     server_options.rate = options.rate;
+    if (options.source != "auto")
+        server_options.source = options.source == "lcm" ? hmi::web::ValueSource::lcm : hmi::web::ValueSource::socket;
     server_options.users = options.users;
     server_options.names = options.names;
     server_options.proxies = options.proxies;
@@ -131,6 +133,9 @@ void add_hmi(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"viewer", "operator", "engineer", "admin"}))
         ->capture_default_str();
     sub->add_option("--rate", options->rate, "values a second to each page")->check(CLI::Range(1, 200))->capture_default_str();
+    sub->add_option("--source", options->source, "from where the values come: lcm, socket; auto: LCM where it works, else the socket")
+        ->check(CLI::IsMember({"auto", "lcm", "socket"}))
+        ->capture_default_str();
     sub->add_option("--page", options->page, "the folder of the page's files");
     sub->add_option(
         "--audit", options->audit,

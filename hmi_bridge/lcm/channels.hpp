@@ -17,6 +17,7 @@ public:
         prefix_ += '_';
     }
     [[nodiscard]] std::string machine_state() const { return prefix_ + "MACHINE_STATE"; }
+    [[nodiscard]] std::string whole_state() const { return prefix_ + "WHOLE_STATE"; }
     [[nodiscard]] std::string axis_state() const { return prefix_ + "AXIS_STATE"; }
     [[nodiscard]] std::string axis_holder() const { return prefix_ + "AXIS_HOLDER"; }
     [[nodiscard]] std::string command_event() const { return prefix_ + "COMMAND_EVENT"; }

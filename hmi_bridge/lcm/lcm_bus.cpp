@@ -149,6 +149,8 @@ bool LcmBus::subscribe_matching(const std::string& pattern, int room, ChannelHan
     return true;
 }
 
+int LcmBus::descriptor() const { return impl_->lcm.getFileno(); }
+
 int LcmBus::wait(Duration patience, int most) {
     const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
     return impl_->lcm.handleTimeout(static_cast<int>(ms)) > 0 ? 1 + poll(most - 1) : 0;

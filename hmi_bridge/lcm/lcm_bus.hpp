@@ -31,6 +31,8 @@ public:
     /// Every channel whose whole name this regular expression (GLib's) is. `room`: messages that wait; what comes beyond it LCM drops without a word. Before the first
     /// poll(). False: it is no regular expression.
     [[nodiscard]] bool subscribe_matching(const std::string& pattern, int room, ChannelHandler handler);
+    /// Readable while messages wait for poll(), once something is subscribed; LCM's own, -1: none.
+    [[nodiscard]] int descriptor() const;
     /// As poll(), and waits for the first message up to `patience`.
     int wait(Duration patience, int most);
 

@@ -3,10 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "axes/axis/error_table.hpp"
 #include "hmi_bridge/command_words.hpp"
+#include "hmi_bridge/lcm/whole_publisher.hpp"
 #include "hmi_bridge/message_count.hpp"
 #include "hmi_bridge/words/event_text.hpp"
 #include "hmi_bridge/words/words.hpp"
@@ -112,6 +115,7 @@ struct Publisher::Impl {
     cycle_statistics_v1_t statistics_message{};
     io_state_v1_t io_message{};
     program_values_v1_t values_message{};
+    std::optional<WholePublisher> whole{};
 
     template <class Message>
     void send(const std::string& channel, Message& message) {
@@ -146,6 +150,10 @@ Publisher::~Publisher() = default;
 
 std::uint64_t Publisher::failed() const noexcept { return impl_->failed; }
 
+void Publisher::publish_whole_states(std::int64_t run, NameOfClient who) {
+    impl_->whole.emplace(impl_->bus, impl_->machine, impl_->state.period, run, std::move(who));
+}
+
 void Publisher::step(const runtime::Snapshot* snapshot, Instant now) {
     auto& p = *impl_;
     if (p.heartbeat(now)) p.send_heartbeat(snapshot);
@@ -156,6 +164,7 @@ void Publisher::step(const runtime::Snapshot* snapshot, Instant now) {
         p.send_io(*snapshot);
         p.send_values(*snapshot);
     }
+    if (p.whole && p.whole->due(now) && !p.whole->publish(*snapshot, ++p.sequence, p.wall_utime())) ++p.failed;
     if (p.statistics(now)) p.send_statistics(*snapshot);
     const bool all_holders = p.holders(now);
     p.send_holders(*snapshot, all_holders);

@@ -10,6 +10,7 @@
 #include "hmi_bridge/lcm/channels.hpp"
 #include "hmi_bridge/lcm/message_bus.hpp"
 #include "hmi_bridge/machine_link.hpp"
+#include "hmi_bridge/state/whole_state.hpp"
 
 namespace taktwerk::hmi {
 
@@ -21,6 +22,9 @@ public:
 
     Publisher(MessageBus& bus, const MachineLink& machine, double rate_hz, bool commands_taken, std::function<std::int64_t()> wall_utime);
     ~Publisher();
+
+    /// Whole states too, from now on (whole_state_v1_t). `run`: not 0, another one of each process.
+    void publish_whole_states(std::int64_t run, NameOfClient who);
 
     /// Each service step: looks at the snapshot (nullptr before the first cycle) and publishes what is due.
     void step(const runtime::Snapshot* snapshot, Instant now);

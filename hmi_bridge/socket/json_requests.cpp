@@ -259,6 +259,7 @@ std::string JsonRequests::hello(const std::optional<std::string>& stuck, Instant
                                  {"progress", stuck ? *stuck : progress_},
                                  {"version", about_.version},
                                  {"uptime_s", began_ ? to_seconds(now - *began_) : 0.0}};
+    hello["lcm"] = {{"url", lcm_.url}, {"why", lcm_.why}, {"rate_hz", lcm_.rate_hz}, {"run", lcm_.run}};
     auto& libraries = hello["libraries"] = nlohmann::ordered_json::array();
     for (const auto& part : about_.libraries)
         libraries.push_back({{"name", part.name}, {"version", part.version}, {"licence", part.licence}});

@@ -69,6 +69,13 @@ public:
         std::vector<Part> libraries;
     };
     void set_about(About about) { about_ = std::move(about); }
+    /// For "hello": where whole states come over LCM (lcm/whole_state_v1_t.lcm), or why they do not.
+    struct LcmTold {
+        std::string url, why;
+        double rate_hz = 0;
+        std::int64_t run = 0;
+    };
+    void set_lcm(LcmTold lcm) { lcm_ = std::move(lcm); }
     /// For "log"; without one it is empty.
     void set_log(std::shared_ptr<const LogTail> log) { questions_.set_log(std::move(log)); }
 
@@ -100,6 +107,7 @@ private:
     ScopeRequests scope_;
     MachineQuestions questions_;
     About about_;
+    LcmTold lcm_;
     std::optional<Instant> began_;
     Measurements measurements_;
     /// What the newest measurement of an axis has come to, as it was answered.

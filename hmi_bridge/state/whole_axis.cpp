@@ -67,7 +67,8 @@ void fill_motion(whole_axis_v1_t& out, const axes::AxisView& axis, const runtime
     out.load_difference = axis.load_difference;
     out.superimposed_covered = axis.superimposed_covered;
     out.phase_shift = axis.phase_shift;
-    put_text(out.master, axis.master.index < layout.axes.size() ? std::string_view(layout.axes[axis.master.index].name) : std::string_view{});
+    put_text(out.master,
+             axis.master.index < layout.axes.size() ? std::string_view(layout.axes[axis.master.index].name) : std::string_view{});
     out.sync_started = axis.sync_started;
 }
 

@@ -12,8 +12,7 @@ namespace {
 void fill(taktwerk_lcm::whole_giver_v1_t& out, const runtime::CommandGiver& giver, const runtime::MachineLayout& layout) {
     put_text(out.command, word(giver.kind));
     put_text(out.owner, name(giver.owner));
-    put_text(out.program,
-             giver.program < layout.programs.size() ? std::string_view(layout.programs[giver.program]) : std::string_view{});
+    put_text(out.program, giver.program < layout.programs.size() ? std::string_view(layout.programs[giver.program]) : std::string_view{});
     put_text(out.block, giver.block ? layout.block_at(giver.block) : std::string_view{});
 }
 

@@ -22,6 +22,7 @@
 #include "taktwerk_lcm/io_state_v1_t.hpp"
 #include "taktwerk_lcm/machine_state_v1_t.hpp"
 #include "taktwerk_lcm/program_values_v1_t.hpp"
+#include "taktwerk_lcm/whole_state_v1_t.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -45,6 +46,20 @@ TEST(LcmTypes, FingerprintsDoNotChange) {
         {"io_state_v1_t", {io_state_v1_t::getHash(), 0x74ff9bc328461ef9u}},
         {"machine_state_v1_t", {machine_state_v1_t::getHash(), 0x29e7c8d11954642fu}},
         {"program_values_v1_t", {program_values_v1_t::getHash(), 0xbf80812da8872cfbu}},
+        {"whole_alarm_v1_t", {whole_alarm_v1_t::getHash(), 0xcf6eb015cf1fcdc6u}},
+        {"whole_axis_v1_t", {whole_axis_v1_t::getHash(), 0xf358ba56d75e4636u}},
+        {"whole_bus_v1_t", {whole_bus_v1_t::getHash(), 0x549a343a648664adu}},
+        {"whole_event_v1_t", {whole_event_v1_t::getHash(), 0xf04824e4569a9217u}},
+        {"whole_force_v1_t", {whole_force_v1_t::getHash(), 0x1494e34d203bbc60u}},
+        {"whole_giver_v1_t", {whole_giver_v1_t::getHash(), 0xb85550231ca38212u}},
+        {"whole_measure_v1_t", {whole_measure_v1_t::getHash(), 0xc625e1affe951bf1u}},
+        {"whole_point_v1_t", {whole_point_v1_t::getHash(), 0x8c90734f0868e5a8u}},
+        {"whole_program_v1_t", {whole_program_v1_t::getHash(), 0xea99b3b421c32f1eu}},
+        {"whole_slave_v1_t", {whole_slave_v1_t::getHash(), 0xa3decc79206f3321u}},
+        {"whole_state_v1_t", {whole_state_v1_t::getHash(), 0xf48ecc8775cb588eu}},
+        {"whole_statistics_v1_t", {whole_statistics_v1_t::getHash(), 0x5b85a89c093cd5e5u}},
+        {"whole_task_v1_t", {whole_task_v1_t::getHash(), 0x00bc836482d1411fu}},
+        {"whole_value_v1_t", {whole_value_v1_t::getHash(), 0xf053d7cc919c68f6u}},
     };
     ASSERT_FALSE(table.empty());
     for (const auto& [name, hashes] : table)

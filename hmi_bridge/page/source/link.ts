@@ -40,6 +40,11 @@ export class Link {
     version = '';
     /** How the server gets the values: `lcm` or `socket`. */
     source = '';
+    /** Why not over LCM, in the server's words; empty: they do. */
+    why_not_lcm = '';
+    /** Publications of LCM that did not come, and messages that were none, since the server listens. */
+    lost = 0;
+    refused = 0;
     /** States that came in the last second. */
     get rate(): number {
         const now = performance.now();
@@ -140,6 +145,7 @@ export class Link {
             this.user = String(message['user'] ?? '');
             this.login = message['login'] === true;
             this.source = String(message['source'] ?? '');
+            this.why_not_lcm = String(message['why_not_lcm'] ?? '');
             this.version = String(message['version'] ?? '');
             this.machines = (message['machines'] as typeof this.machines | undefined) ?? [];
             this.machine = String(message['machine'] ?? '');
@@ -153,6 +159,8 @@ export class Link {
             this.came_.push(performance.now());
             if (this.came_.length > most_counted) this.came_.shift();
             this.why_stale = '';
+            this.lost = Number(message['lost'] ?? 0);
+            this.refused = Number(message['refused'] ?? 0);
             if (this.state?.cycle !== state.cycle) {
                 const age = Number(message['age_ms'] ?? 0);
                 this.fresh_at = performance.now() - age;

@@ -21,8 +21,8 @@ inline Error unknown_machine(const std::string& name) {
 class Feeds {
 public:
     /// `wanted`: names or paths; empty: all. `fresh`: a machine has new values.
-    Feeds(asio::io_context& io, std::vector<std::string> wanted, Feed::Told fresh)
-        : io_(io), wanted_(std::move(wanted)), fresh_(std::move(fresh)) {}
+    Feeds(asio::io_context& io, std::vector<std::string> wanted, ValueSource source, Feed::Told fresh)
+        : io_(io), wanted_(std::move(wanted)), source_(source), fresh_(std::move(fresh)) {}
 
     void step(Instant at, const std::set<Feed*>& watched) {
         if (at - looked_ >= look_again) {
@@ -76,13 +76,14 @@ private:
             auto& feed = by_path_[path];
             if (!feed)
                 feed = std::make_shared<Feed>(
-                    io_, path, [this](Feed&) { ++version_; }, fresh_);
+                    io_, path, source_, [this](Feed&) { ++version_; }, fresh_);
             if (!feed->connected()) feed->connect();
         }
     }
 
     asio::io_context& io_;
     std::vector<std::string> wanted_;
+    ValueSource source_;
     Feed::Told fresh_;
     std::map<std::string, std::shared_ptr<Feed>> by_path_;
     std::uint64_t version_ = 0;

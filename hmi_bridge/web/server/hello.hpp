@@ -16,18 +16,17 @@ inline std::string hello_text(const Site& site, const Feed* feed, std::optional<
     auto may_give = Json::array();
     for (const auto& rule : command_rules)
         if (role && may(*role, rule)) may_give.push_back(rule.command);
-    const Json known{
-        {"type", "hello"},
-        {"protocol", 1},
-        {"version", site.options.version},
-        {"role", role ? word(*role) : std::string_view{}},
-        {"user", user},
-        {"login", site.accounts.needed()},
-        {"may", std::move(may_give)},
-        {"machines", role ? site.feeds.list() : Json::array()},
-        {"machine", feed != nullptr ? feed->name() : std::string{}},
-        {"source", "socket"},
-        {"why_not_lcm", "this version takes the whole state over the local socket; the channels of LCM do not carry all of it"}};
+    const Json known{{"type", "hello"},
+                     {"protocol", 1},
+                     {"version", site.options.version},
+                     {"role", role ? word(*role) : std::string_view{}},
+                     {"user", user},
+                     {"login", site.accounts.needed()},
+                     {"may", std::move(may_give)},
+                     {"machines", role ? site.feeds.list() : Json::array()},
+                     {"machine", feed != nullptr ? feed->name() : std::string{}},
+                     {"source", feed != nullptr ? feed->source() : std::string_view{}},
+                     {"why_not_lcm", feed != nullptr ? feed->why_not_lcm() : std::string{}}};
     auto text = text_of(known);
     text.pop_back();
     return text + ",\"layout\":" + (feed != nullptr ? feed->layout() : std::string("null")) + "}";

@@ -17,7 +17,7 @@ struct WebServer::Impl {
         : options(std::move(given)),
           files(std::move(its_files)),
           accounts(std::move(its_accounts)),
-          feeds(io, options.machines, [this](Feed& feed) { hand_out(feed); }) {}
+          feeds(io, options.machines, options.source, [this](Feed& feed) { hand_out(feed); }) {}
     /// Who waits for an answer holds what the answer is for: nobody waits any more.
     ~Impl() {
         if (!site) return;

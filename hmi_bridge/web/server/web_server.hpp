@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "hmi_bridge/web/lcm_offer.hpp"
 #include "hmi_bridge/web/roles.hpp"
 #include "hmi_bridge/web/site_files.hpp"
 
@@ -22,6 +23,7 @@ struct ServerOptions {
     Role role = Role::engineer;         ///< of every page, where nobody logs in
     std::vector<std::string> names;    ///< more names of this server, as browsers write them into `Host`: "hmi.example", "hmi.example:8443"
     std::vector<std::string> proxies;  ///< addresses whose X-Forwarded-For and X-Forwarded-Proto are believed
+    ValueSource source = ValueSource::automatic;
     std::string version;
     int rate = 20;                                    ///< values a second to each page, 1 to 200
     bool end_with_input = false;                      ///< ends when standard input does
