@@ -3,19 +3,19 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Cell, pause, unhurried, until } from './cell';
+import { Cell, unhurried, until } from './cell';
 
 const cell = new Cell();
 before(() => cell.start({ machine: unhurried }), { timeout: 120_000 });
 after(() => cell.end());
 
-test('it stands on every page and in both languages, with cause and remedy', { timeout: 90_000 }, async () => {
+test('it stands on every page and in both languages, with cause and remedy', { timeout: 180_000 }, async () => {
     await cell.powered_and_homed('y');
-    await cell.machine.told({ cmd: 'move', axis: 'y', position: 200, velocity: 40 });
+    await cell.told({ cmd: 'move', axis: 'y', position: 200, velocity: 40 });
     await cell.look('#overview');
     assert.ok(await cell.page.locator('.strip').isHidden());
-    await cell.machine.told({ cmd: 'simulate', line: 'drive-fault y 0x3130' });
-    await cell.page.locator('.strip').waitFor({ timeout: 5000 });
+    await cell.told({ cmd: 'simulate', line: 'drive-fault y 0x3130' });
+    await cell.page.locator('.strip').waitFor();
     assert.match((await cell.page.locator('.strip').textContent()) ?? '', /axis y: .*3130h/);
     await cell.page.locator('.strip').click();
     const card = cell.page.locator('[data-alarm="drive_fault"]');
@@ -34,18 +34,18 @@ test('it stands on every page and in both languages, with cause and remedy', { t
     assert.ok(((await cell.page.locator('.page.alarms').textContent()) ?? '').includes('电网缺一相'));
 });
 
-test('one click opens what was recorded around it', { timeout: 90_000 }, async () => {
+test('one click opens what was recorded around it', { timeout: 180_000 }, async () => {
     await cell.look('#alarms');
     const link = cell.page.locator('[data-alarm="drive_fault"] [data-recording]');
-    await link.waitFor({ timeout: 15_000 });
+    await link.waitFor();
     const name = (await link.getAttribute('data-recording')) ?? '';
-    await until('it is whole', async () => ((await cell.machine.told({ cmd: 'recordings' }))['recordings'] as { name: string; complete: boolean }[]).some((r) => r.name === name && r.complete));
+    await until('it is whole', async () => ((await cell.told({ cmd: 'recordings' }))['recordings'] as { name: string; complete: boolean }[]).some((r) => r.name === name && r.complete));
     await link.click();
     assert.ok((await cell.page.evaluate(() => location.hash)).startsWith('#scope/recording/'));
-    await cell.page.locator('.page.scope canvas').first().waitFor({ timeout: 10_000 });
+    await cell.page.locator('.page.scope canvas').first().waitFor();
 });
 
-test('its file is saved as it lies on the machine\'s disk', { timeout: 90_000 }, async () => {
+test('its file is saved as it lies on the machine\'s disk', { timeout: 180_000 }, async () => {
     await cell.look('#system');
     const save = cell.page.locator('[data-do="copy_recording"]').first();
     await until('it may be saved', () => save.isEnabled());
@@ -58,10 +58,10 @@ test('its file is saved as it lies on the machine\'s disk', { timeout: 90_000 },
     assert.ok(readFileSync(await download.path()).equals(on_disk));
 });
 
-test('afterwards it is in the history: found by its text and place, handed out as CSV', { timeout: 90_000 }, async () => {
+test('afterwards it is in the history: found by its text and place, handed out as CSV', { timeout: 180_000 }, async () => {
     await cell.look('#alarms/history');
     const rows = cell.page.locator('[data-past-alarm]');
-    await cell.page.locator('[data-past-alarm="drive_fault"]').waitFor({ timeout: 15_000 });
+    await cell.page.locator('[data-past-alarm="drive_fault"]').waitFor();
     await cell.page.locator('[data-input="text"]').fill('no alarm says this');
     await until('nothing fits', async () => (await rows.count()) === 0);
     await cell.page.locator('[data-input="text"]').fill('3130h');
@@ -80,14 +80,12 @@ test('afterwards it is in the history: found by its text and place, handed out a
     assert.equal(csv.trimEnd().split('\r\n').length, 1 + (await rows.count()));
 });
 
-test('reset by the page: it stands no more and lasted as long as it stood', { timeout: 90_000 }, async () => {
+test('reset by the page: it stands no more and lasted as long as it stood', { timeout: 180_000 }, async () => {
     await cell.look('#alarms');
     await until('reset may be pressed', () => cell.page.locator('[data-cmd="reset"]').isEnabled());
-    await cell.page.locator('[data-cmd="reset"]').click();
-    await until('it is gone', async () => !((await cell.machine.state())['alarms'] as { name: string; standing: boolean }[]).some((a) => a.name === 'drive_fault' && a.standing));
+    await cell.insist('it is gone', () => cell.page.locator('[data-cmd="reset"]').click(), async () => !((await cell.machine.state())['alarms'] as { name: string; standing: boolean }[]).some((a) => a.name === 'drive_fault' && a.standing));
     await cell.look('#alarms/history');
     const row = cell.page.locator('[data-past-alarm="drive_fault"]').first();
     await row.waitFor();
-    await until('it says how long', async () => !/standing/.test((await row.textContent()) ?? ''), 15_000);
-    await pause(100);
+    await until('it says how long', async () => !/standing/.test((await row.textContent()) ?? ''));
 });

@@ -104,12 +104,13 @@ test('a server that does not answer ends it', async () => {
     assert.deepEqual(bench.endings, ['unanswered']);
 });
 
-test('no press without a connection, on old values, at no velocity', () => {
-    for (const trouble of [(bench: Bench) => { bench.blocked = true; }, (bench: Bench) => { bench.stale = true; }]) {
+test('no press without a connection, on old values, at no velocity; whoever pressed is told', () => {
+    for (const [ending, trouble] of [['socket', (bench: Bench) => { bench.blocked = true; }], ['stale', (bench: Bench) => { bench.stale = true; }]] as const) {
         const bench = new Bench();
         trouble(bench);
         assert.ok(!bench.hold.press('x', 20));
         assert.deepEqual(bench.sent, []);
+        assert.deepEqual(bench.endings, [ending]);
     }
     const bench = new Bench();
     assert.ok(!bench.hold.press('x', 0));

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { Cell, quiet, until } from './cell';
+import { Cell, patience, quiet, until } from './cell';
 
 const cell = new Cell();
 const users = join(cell.folder, 'users.json');
@@ -25,8 +25,8 @@ async function log_in(user: string, password: string): Promise<void> {
     await cell.page.locator('dialog[open] [data-do="log_in"]').click();
 }
 
-test('nothing of the machine is seen before somebody has logged in; a wrong password says no more than that', { timeout: 60_000 }, async () => {
-    await cell.page.locator('dialog[open] [data-input="user"]').waitFor({ timeout: 10_000 });
+test('nothing of the machine is seen before somebody has logged in; a wrong password says no more than that', { timeout: 180_000 }, async () => {
+    await cell.page.locator('dialog[open] [data-input="user"]').waitFor({ timeout: patience });
     assert.match((await cell.page.locator('.stale').textContent()) ?? '', /Log in/);
     assert.equal(await cell.page.locator('main .page').count(), 0);
     for (const user of ['anna', 'nobody']) {
@@ -36,15 +36,14 @@ test('nothing of the machine is seen before somebody has logged in; a wrong pass
     }
 });
 
-test('an operator is known by name, runs the machine, and changes nothing of it', { timeout: 60_000 }, async () => {
+test('an operator is known by name, runs the machine, and changes nothing of it', { timeout: 180_000 }, async () => {
     await log_in('anna', 'a long horse battery');
-    await cell.page.locator('body:not([data-stale]) .page').waitFor({ timeout: 10_000 });
+    await cell.page.locator('body:not([data-stale]) .page').waitFor({ timeout: patience });
     await until('name and role', async () => (await account().textContent()) === 'anna · operator');
     assert.equal(await cell.page.locator('dialog[open]').count(), 0);
     await cell.page.evaluate(() => { location.hash = 'axis/x'; });
     await until('power may be given', () => cell.page.locator('[data-cmd="enable"]').isEnabled());
-    await cell.page.locator('[data-cmd="enable"]').click();
-    await until('x has power', async () => (await cell.axis('x')).powered);
+    await cell.insist('x has power', () => cell.page.locator('[data-cmd="enable"]').click(), async () => (await cell.axis('x')).powered);
     await cell.page.evaluate(() => { location.hash = 'io'; });
     const set = cell.page.locator('[data-output-point="gripper"] [data-set="1"]');
     await set.waitFor();
@@ -52,10 +51,10 @@ test('an operator is known by name, runs the machine, and changes nothing of it'
     assert.match((await set.getAttribute('data-reason')) ?? '', /operator/);
 });
 
-test('logged out, nothing is seen any more, in no window', { timeout: 60_000 }, async () => {
+test('logged out, nothing is seen any more, in no window', { timeout: 180_000 }, async () => {
     const second = await cell.page.context().newPage();
     await second.goto(cell.address);
-    await second.locator('body:not([data-stale]) .page').waitFor({ timeout: 10_000 });
+    await second.locator('body:not([data-stale]) .page').waitFor({ timeout: patience });
     await cell.page.bringToFront();
     await account().click();
     await cell.page.locator('dialog[open] [data-do="log_out"]').click();
@@ -65,7 +64,7 @@ test('logged out, nothing is seen any more, in no window', { timeout: 60_000 }, 
     }
 });
 
-test('a viewer looks', { timeout: 60_000 }, async () => {
+test('a viewer looks', { timeout: 180_000 }, async () => {
     if ((await cell.page.locator('dialog[open]').count()) === 0) await account().click();
     await log_in('otto', 'another staple here');
     await until('name and role', async () => (await account().textContent()) === 'otto · viewer');

@@ -1,13 +1,13 @@
 // Each page as it stands on a panel PC of 1280 x 800, in both languages and themes: nothing cut off, nothing beside the screen, big enough for a finger, no word of the other language.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { Cell, pause, Taste, unhurried } from './cell';
+import { Cell, Taste, unhurried, until } from './cell';
 
 const cell = new Cell();
 before(() => cell.start({ machine: unhurried }), { timeout: 120_000 });
 after(() => cell.end());
 
-const places = ['overview', 'axis/x', 'axis/x/drive', 'alarms', 'alarms/history', 'io', 'programs', 'bus', 'system'];
+const places = ['overview', 'axis/x', 'axis/x/drive', 'alarms', 'alarms/history', 'programs', 'bus', 'system', 'io'];
 const tastes: Required<Taste>[] = [{ language: 'en', theme: 'light' }, { language: 'zh', theme: 'dark' }];
 /** What has to be seen as a whole: hands, and what is watched while they work. */
 const without_scrolling = ['overview', 'axis/x', 'io'];
@@ -17,13 +17,16 @@ const allowed = /^(demo|x|y|z|io|[xyz]_drive|sv33-e|se-808x|estop_ok|start_butto
 
 for (const taste of tastes)
     for (const place of places)
-        test(`${place}, ${taste.language}, ${taste.theme}`, { timeout: 60_000 }, async () => {
-            await cell.look(`#${place}`, taste);
-            await pause(800);
-            if (place === 'io' && (await cell.page.locator('[data-do="forcing"]').isEnabled())) {
-                await cell.page.locator('[data-do="forcing"]').check();
-                await cell.page.locator('[data-input-point="part_present"] [data-set="0"]').click();
-                await pause(300);
+        test(`${place}, ${taste.language}, ${taste.theme}`, { timeout: 180_000 }, async () => {
+            if (place === places[0]) await cell.look('', taste);
+            await cell.go(place);
+            if (place === 'io') {
+                const forcing = cell.page.locator('[data-do="forcing"]');
+                await until('forcing is allowed', () => forcing.isEnabled());
+                await forcing.check();
+                await cell.insist('it is forced', () => cell.page.locator('[data-input-point="part_present"] [data-set="0"]').click(), () => cell.page.locator('.banner.forced').isVisible());
+                await cell.hush();
+                await cell.settled();
             }
             const seen = await cell.page.evaluate(() => {
                 const main = document.querySelector('main') as HTMLElement;

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { pause, until } from './cell';
+import { patience, until } from './cell';
 import { Json } from './machine';
 import { ScopeCell, table } from './scope_cell';
 
@@ -10,9 +10,9 @@ const scope = new ScopeCell(), { cell } = scope;
 before(() => scope.start(), { timeout: 120_000 });
 after(() => cell.end());
 
-test('32 signals at 1 kHz, live for six seconds: not one cycle is missing', { timeout: 60_000 }, async () => {
+test('32 signals at 1 kHz, live for six seconds: not one cycle is missing', { timeout: 240_000 }, async () => {
     await cell.look('#scope');
-    const described = (await cell.machine.ask({ cmd: 'scope_signals' }))['scope'] as Json;
+    const described = (await cell.told({ cmd: 'scope_signals' }))['scope'] as Json;
     assert.equal(described['cycle_ns'], 1_000_000);
     const names = (described['signals'] as Json[]).filter((s) => s['kind'] === 'real' && s['group'] === 'axis').map((s) => String(s['name'])).slice(0, 32);
     const more = (described['signals'] as Json[]).map((s) => String(s['name'])).filter((name) => !names.includes(name) && name !== 'time_s').slice(0, 32 - names.length);
@@ -22,7 +22,7 @@ test('32 signals at 1 kHz, live for six seconds: not one cycle is missing', { ti
     }, [...names, ...more]);
     await cell.page.reload();
     await cell.page.locator('.scope-values tbody tr').nth(31).waitFor();
-    await pause(6000);
+    await scope.cycles(6000);
     const file = table(await scope.exported());
     assert.equal(file.names.length, 33);
     assert.ok(file.rows > 4900, `${file.rows} cycles`);
@@ -30,12 +30,12 @@ test('32 signals at 1 kHz, live for six seconds: not one cycle is missing', { ti
     assert.equal(await cell.page.locator('tr[data-missing]').count(), 0);
 });
 
-test('what is exported is what the machine has, to the last digit; so is what a cursor says', { timeout: 90_000 }, async () => {
+test('what is exported is what the machine has, to the last digit; so is what a cursor says', { timeout: 240_000 }, async () => {
     await cell.powered_and_homed('x');
     await cell.look('#scope');
     await scope.tick('x.set_position', 'x.actual_position', 'x.following_error', 'x.state');
-    await cell.machine.ask({ cmd: 'move', axis: 'x', position: 100, velocity: 150 });
-    await pause(1500);
+    await cell.told({ cmd: 'move', axis: 'x', position: 100, velocity: 150 });
+    await scope.cycles(1500);
     await scope.press('freeze');
     const file = table(await scope.exported());
     assert.ok((await scope.as_the_machine(file)) > 1000);
@@ -46,19 +46,24 @@ test('what is exported is what the machine has, to the last digit; so is what a 
     await line.focus();
     await cell.page.keyboard.press('ArrowRight');
     await until('the values are there', async () => (await cell.page.locator('tr[data-row="x.actual_position"] [data-value="a"]').textContent()) !== '–');
-    await pause(400);
     const between = table(await scope.exported()), positions = between.columns[between.names.indexOf('x.actual_position')] ?? [];
     const text = (row: string, value: string) => cell.page.locator(`tr[data-row="${row}"] [data-value="${value}"]`).textContent();
+    await until('the numbers follow', async () => Number((await text('x.actual_position', 'a'))?.replace('−', '-')) === positions[0] && Number((await text('x.actual_position', 'max'))?.replace('−', '-')) === Number(Math.max(...positions).toPrecision(7)));
     assert.equal(Number((await text('x.actual_position', 'a'))?.replace('−', '-')), positions[0]);
     assert.equal(Number((await text('x.actual_position', 'b'))?.replace('−', '-')), positions[positions.length - 1]);
     assert.equal(Number((await text('x.actual_position', 'max'))?.replace('−', '-')), Number(Math.max(...positions).toPrecision(7)));
     assert.match((await text('x.state', 'b')) ?? '', /^(Homing|Standstill|DiscreteMotion)$/);
 });
 
-test('zooming asks for no less: each cycle is a sample, frozen or scrolled back', { timeout: 60_000 }, async () => {
+test('zooming asks for no less: each cycle is a sample, frozen or scrolled back', { timeout: 240_000 }, async () => {
     await cell.look('#scope');
     await scope.tick('in.start_button');
-    await pause(4500);
+    await until('pulses', async () => {  // of a machine that was late some are missing
+        const all = (await cell.told({ cmd: 'scope_signals' }))['scope'] as Json, last = Number(all['last']);
+        const { columns } = await scope.recorded(['in.start_button'], Math.max(Number(all['first']), last - 6000), last + 1);
+        return (columns[0]?.length ?? 0) >= 6000 && (columns[0]?.filter((v) => v === 1).length ?? 0) >= 2;
+    });
+    await until('the page has them', async () => Number((await cell.page.locator('body').getAttribute('data-cycle'))) >= Number((await cell.machine.state())['cycle']) - 500);
     await scope.press('freeze');
     await cell.page.locator('.scope-surface').focus();
     for (let i = 0; i < 3; i++) await cell.page.keyboard.press('ArrowLeft');
@@ -73,7 +78,7 @@ test('zooming asks for no less: each cycle is a sample, frozen or scrolled back'
     for (const at of ones) assert.equal(button[at + 1] ?? 0, 0, 'of one sample');
 });
 
-test('a file of this disk opens in the same view, and wrong ones are told', { timeout: 60_000 }, async () => {
+test('a file of this disk opens in the same view, and wrong ones are told', { timeout: 240_000 }, async () => {
     await cell.look('#scope');
     await scope.press('files');
     const give = (name: string, text: string) => cell.page.locator('[data-file="csv"]').setInputFiles({ name, mimeType: 'text/csv', buffer: Buffer.from(text) });
@@ -92,7 +97,7 @@ test('a file of this disk opens in the same view, and wrong ones are told', { ti
     await cell.page.locator('.scope-other.xy canvas').waitFor();
 });
 
-test('a set-up is saved by name, exported and comes back', { timeout: 60_000 }, async () => {
+test('a set-up is saved by name, exported and comes back', { timeout: 240_000 }, async () => {
     await cell.look('#scope');
     await scope.tick('x.actual_torque');
     await scope.press('files');
@@ -111,33 +116,41 @@ test('a set-up is saved by name, exported and comes back', { timeout: 60_000 }, 
     await cell.page.locator('tr[data-row="x.actual_torque"]').waitFor();
 });
 
-test('hands: wheel, drag, a box, double click, keys, a scale by hand', { timeout: 60_000 }, async () => {
+test('hands: wheel, drag, a box, double click, keys, a scale by hand', { timeout: 240_000 }, async () => {
     await cell.look('#scope');
     await until('curves are there', async () => /\d/.test((await scope.shown('newest')) ?? ''));
-    await pause(3000);
+    await scope.cycles(3000);
     await scope.press('freeze');
-    /** What is seen: s. */
+    const { from: first, seconds } = await scope.times();
+    /** The cycle of a time: a machine on a busy computer skips milliseconds, and what is seen is as wide as its cycles. */
+    const cycle_of = (s: number): number => {
+        const at = seconds.findIndex((t) => t >= s - 1e-6);
+        assert.ok(at >= 0 && s >= (seconds[0] ?? NaN), `${s} s is not among the machine's`);
+        return first + at;
+    };
+    /** What is seen, in cycles. */
     const seen = async (): Promise<{ from: number; to: number; span: number }> => {
-        let text = '', before = '-';
-        for (; text !== before; await pause(700)) [before, text] = [text, (await cell.page.locator('.scope-between').textContent()) ?? ''];
-        const [from = NaN, to = NaN] = text.split('shown,')[1]?.split(' to ').map((t) => parseFloat(t.trim().replace('−', '-'))) ?? [];
+        const text = (await cell.page.locator('.scope-between').textContent()) ?? '';
+        const [from = NaN, to = NaN] = text.split('shown,')[1]?.split(' to ').map((t) => cycle_of(parseFloat(t.trim().replace('−', '-')))) ?? [];
         return { from, to, span: to - from };
     };
-    // A machine on a busy computer skips milliseconds, and its times tell so: not as even as the picture.
-    const near = (a: number, b: number, within = 0.2): void => assert.ok(Math.abs(a - b) <= within, `${a} instead of ${b}`);
+    type Seen = Awaited<ReturnType<typeof seen>>;
+    const becomes = async (what: string, wanted: Partial<Seen>, within: number): Promise<Seen> => {
+        let is = await seen();
+        const holds = () => Object.entries(wanted).every(([key, cycles]) => Math.abs(is[key as keyof Seen] - cycles) <= within);
+        await until(`${what}: ${JSON.stringify(wanted)}`, async () => ((is = await seen()), holds()), patience).catch((why: unknown) => assert.fail(`${JSON.stringify(is)}: ${String(why)}`));
+        return is;
+    };
     await cell.page.locator('[data-field="span"]').selectOption('2');
     const box = await cell.page.locator('.scope-surface').boundingBox();
     assert.ok(box);
     const at = (part: number) => box.x + box.width * part, middle = box.y + 60;
-    const { mouse, keyboard } = cell.page, start = await seen();
-    near(start.span, 2);
+    const { mouse, keyboard } = cell.page, start = await becomes('2 s', { span: 2000 }, 3);
 
     await mouse.move(at(0.25), middle);
     await mouse.wheel(0, -400);
-    await pause(1000);
-    const zoomed = await seen();
-    near(zoomed.span, 2 / 1.25 ** 4);
-    near(zoomed.from + zoomed.span * 0.25, start.from + 0.5, 0.1);  // what is under the pointer stays there
+    const span = 2000 / 1.25 ** 4;
+    const zoomed = await becomes('zoomed; what is under the pointer stays there', { span, from: start.from + 500 - span / 4 }, 10);
 
     const drag = async (from: number, to: number): Promise<void> => {
         await mouse.move(at(from), middle);
@@ -147,41 +160,38 @@ test('hands: wheel, drag, a box, double click, keys, a scale by hand', { timeout
         await mouse.up();
     };
     await drag(0.5, 0.75);
-    const moved = await seen();
-    near(moved.from, zoomed.from - zoomed.span / 4);
+    const moved = await becomes('dragged', { from: zoomed.from - zoomed.span / 4, span }, 10);
 
     await keyboard.down('Shift');
     await drag(0.25, 0.75);
     await keyboard.up('Shift');
-    const boxed = await seen();
-    near(boxed.span, zoomed.span / 2);
-    near(boxed.from, moved.from + moved.span / 4);
+    await becomes('a box', { span: span / 2, from: moved.from + moved.span / 4 }, 10);
 
     await mouse.dblclick(at(0.5), middle);
-    near((await seen()).from, moved.from);
+    await becomes('back', { from: moved.from, span }, 10);
     await cell.page.locator('.scope-surface').focus();
     await keyboard.press('ArrowLeft');
-    near((await seen()).from, moved.from - moved.span / 10);
+    await becomes('to the left', { from: moved.from - moved.span / 10, span }, 10);
     await keyboard.press('+');
-    near((await seen()).span, moved.span / 2);
+    await becomes('nearer', { span: span / 2 }, 10);
     await keyboard.press('End');
     await until('it follows again', async () => /Freeze/.test((await cell.page.locator('[data-do="freeze"]').textContent()) ?? ''));
 
     await cell.page.locator('.scope-name').first().click();
     for (const [field, text] of [['min', '-20'], ['max', '30']] as const) await cell.page.locator(`[data-field="${field}"]`).fill(text);
     await scope.press('scale');
-    await pause(300);
+    await cell.settled();
     await cell.page.locator('.scope-name').first().click();
     assert.equal(await cell.page.locator('[data-field="max"]').inputValue(), '30');
     await scope.press('autoscale');
 });
 
 for (const taste of [{ language: 'en', theme: 'light' }, { language: 'zh', theme: 'dark' }] as const)
-    test(`as it stands on a panel PC, ${taste.language}, ${taste.theme}: nothing beside the screen, no word of the other language`, { timeout: 60_000 }, async () => {
+    test(`as it stands on a panel PC, ${taste.language}, ${taste.theme}: nothing beside the screen, no word of the other language`, { timeout: 240_000 }, async () => {
         await cell.look('#scope', taste);
         for (const open of ['signals', 'trigger', 'files']) {
             await scope.press(open);
-            await pause(500);
+            await cell.settled();
             const seen = await cell.page.evaluate(() => {
                 const visible = [...document.querySelectorAll<HTMLElement>('.page.scope *')].filter((e) => e.getClientRects().length > 0);
                 const main = document.querySelector('main') as HTMLElement;
@@ -202,7 +212,7 @@ for (const taste of [{ language: 'en', theme: 'light' }, { language: 'zh', theme
         }
     });
 
-test('the picture is a PNG of its size', { timeout: 60_000 }, async () => {
+test('the picture is a PNG of its size', { timeout: 240_000 }, async () => {
     await cell.look('#scope');
     await until('curves are there', async () => /\d/.test((await scope.shown('newest')) ?? ''));
     await scope.press('files');

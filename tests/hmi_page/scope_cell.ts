@@ -2,11 +2,11 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { Doubles } from '@page/scope/base64';
-import { Cell, quiet } from './cell';
+import { Cell, quiet, until } from './cell';
 import { Json } from './machine';
 
 // Each two seconds: at 1 kHz a sample.
-const pulses = Array.from({ length: 60 }, (_, i) => `    - { at: ${4000 + 2000 * i} ms, input: start_button, value: 1 }\n    - { at: ${4001 + 2000 * i} ms, input: start_button, value: 0 }`).join('\n');
+const pulses = Array.from({ length: 600 }, (_, i) => `    - { at: ${4000 + 2000 * i} ms, input: start_button, value: 1 }\n    - { at: ${4001 + 2000 * i} ms, input: start_button, value: 0 }`).join('\n');
 export const with_pulses = (yaml: string): string => `${quiet(yaml).trimEnd()}\n  events:\n${pulses}\n`;
 
 export interface Table {
@@ -27,7 +27,7 @@ export class ScopeCell {
     readonly cell = new Cell();
 
     start(): Promise<void> {
-        return this.cell.start({ machine: with_pulses });
+        return this.cell.start({ machine: with_pulses, cycle: '1 ms' });
     }
     press(what: string): Promise<void> {
         return this.cell.page.locator(`[data-do="${what}"]`).click();
@@ -45,6 +45,16 @@ export class ScopeCell {
         }
         await search.fill('');
     }
+    /** So many more are there. */
+    async cycles(more: number): Promise<void> {
+        const now = async () => Number((await this.cell.machine.state())['cycle']), from = await now();
+        await until(`${more} cycles`, async () => (await now()) >= from + more);
+    }
+    /** When each cycle was that the machine has: s. A busy computer skips time. */
+    async times(): Promise<{ from: number; seconds: number[] }> {
+        const all = (await this.cell.told({ cmd: 'scope_signals' }))['scope'] as Json, { from, columns } = await this.recorded(['time_s'], Number(all['first']), Number(all['last']) + 1);
+        return { from, seconds: columns[0] ?? [] };
+    }
     /** What "save as CSV" gives. */
     async exported(): Promise<string> {
         if ((await this.cell.page.locator('[data-do="files"]').getAttribute('aria-expanded')) !== 'true') await this.press('files');
@@ -56,7 +66,7 @@ export class ScopeCell {
         const columns: number[][] = names.map(() => []);
         let begin = from;
         for (let at = from; at < to; at += 3000) {
-            const answer = await this.cell.machine.told({ ...(recording ? { cmd: 'recording_read', recording } : { cmd: 'scope_read' }), signals: names, from: at, to: Math.min(to, at + 3000), points: 3000 });
+            const answer = await this.cell.told({ ...(recording ? { cmd: 'recording_read', recording } : { cmd: 'scope_read' }), signals: names, from: at, to: Math.min(to, at + 3000), points: 3000 });
             assert.equal(answer['per'], 1);
             if (at === from) begin = Number(answer['from']);
             (answer['data'] as string[]).forEach((text, i) => columns[i]?.push(...new Doubles().decode(text)));
@@ -66,7 +76,7 @@ export class ScopeCell {
     /** Each row is the machine's next cycle, each number the machine's; answers how many cycles were looked at. */
     async as_the_machine(file: Table, recording = ''): Promise<number> {
         const names = ['time_s', ...file.names.slice(1)];
-        const all = (await this.cell.machine.told(recording ? { cmd: 'recording_signals', recording } : { cmd: 'scope_signals' }))['scope'] as Json;
+        const all = (await this.cell.told(recording ? { cmd: 'recording_signals', recording } : { cmd: 'scope_signals' }))['scope'] as Json;
         const first = Number(all['first']), times = (await this.recorded(['time_s'], first, Number(all['last']) + 1, recording));
         const start = times.columns[0]?.[0] ?? NaN, skipped = (file.columns[0] ?? []).findIndex((t) => t >= start);  // the machine forgets the oldest meanwhile
         assert.ok(skipped >= 0, `rows from ${file.columns[0]?.[0]} to ${file.columns[0]?.[file.rows - 1]} s, the machine has from ${start} s`);

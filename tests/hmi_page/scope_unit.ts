@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Doubles } from '@page/scope/base64';
 import { draw_curve } from '@page/scope/curve';
+import { seconds_of } from '@page/scope/cycle_time';
 import { another_run, Live, load, Reader } from '@page/scope/pull';
 import { bit_of, Kind, Signal } from '@page/scope/signals';
 import { Spans } from '@page/scope/spans';
@@ -55,6 +56,16 @@ test('the store keeps the newest and forgets the oldest; a hole stays a hole', (
     store.keep(['a'], 4);
     assert.deepEqual([...store.copy('a', 3, 11)], [NaN, NaN, NaN, NaN, 7, 8, 9, 10]);
     assert.ok(!store.tracks.has('b'));
+});
+
+test('a cycle that is not there counts on from the nearest that is: the machine skipped time', () => {
+    const store = new Store(100), at = (cycle: number) => Math.round(seconds_of(store, cycle, 1_000_000, 5e9) * 1e6) / 1e6;
+    assert.equal(at(10), 5.01, 'nothing is known');
+    store.put('time_s', 10, Float64Array.from([7, 7.001, 9, 9.001]));
+    assert.deepEqual([10, 11, 12, 13].map(at), [7, 7.001, 9, 9.001]);
+    assert.deepEqual([8, 14, 20].map(at), [6.998, 9.002, 9.008]);
+    store.put('time_s', 20, Float64Array.from([12]));
+    assert.deepEqual([16, 18, 25].map(at), [9.004, 11.998, 12.005]);
 });
 
 test('memory is bounded: 32 signals at 1 kHz take at most 96 MiB, and 20 s are always kept', () => {

@@ -76,11 +76,21 @@ export class Desk {
     permit(button: HTMLButtonElement | HTMLInputElement | HTMLSelectElement, cmd: string, possible = true, why = ''): void {
         const may = this.link.allowed(cmd);
         const allowed = possible && !this.link.stale && may;
-        if (button.disabled === allowed) button.disabled = !allowed;
+        if (button.disabled === allowed) this.enable(button, allowed);
         const reason = allowed ? '' : this.link.stale ? say('grey_stale') : !may ? (this.link.role === 'admin' ? say('not_known') : say('grey_role', { role: word('role', this.link.role) })) : why;
         mark(button, 'data-denied', !may);
         mark(button, 'data-reason', reason || false);
     }
+    /** What turns grey loses the keyboard's focus, if only for a moment in which the values were old: it has it again, unless somebody went on meanwhile. */
+    private enable(button: HTMLButtonElement | HTMLInputElement | HTMLSelectElement, may: boolean): void {
+        if (!may && document.activeElement === button) this.unfocused_ = button;
+        button.disabled = !may;
+        if (!may || this.unfocused_ !== button) return;
+        this.unfocused_ = undefined;
+        if (document.activeElement === document.body) button.focus({ preventScroll: true });
+    }
+    private unfocused_: HTMLElement | undefined;
+
     /** A grey button takes no click; so the page looks what lies under the finger, and says why. */
     tell_reasons(): void {
         document.addEventListener('pointerdown', ({ clientX: x, clientY: y }) => {

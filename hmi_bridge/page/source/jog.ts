@@ -39,13 +39,17 @@ export class JogHold {
         return this.held_?.axis;
     }
 
-    /** A press while another holds is a second hand: it ends the first and begins nothing. */
+    /** A press while another holds is a second hand: it ends the first and begins nothing. What begins nothing for another reason is told as if it had ended. */
     press(axis: string, velocity: number): boolean {
         if (this.held_) {
             this.end('second_pointer');
             return false;
         }
-        if (velocity === 0 || !Number.isFinite(velocity) || this.wire_.blocked() || this.wire_.stale()) return false;
+        if (velocity === 0 || !Number.isFinite(velocity)) return false;
+        if (this.wire_.blocked() || this.wire_.stale()) {
+            this.on_end(this.wire_.blocked() ? 'socket' : 'stale');
+            return false;
+        }
         const held = { axis, velocity, at: this.clock_.now(), unanswered: 0, stop: () => undefined as void };
         this.held_ = held;
         held.stop = this.clock_.every(renewal, () => this.renew());

@@ -17,6 +17,8 @@ export type Request = { cmd: string } & Record<string, unknown>;
 
 /** Values older than this are not shown as live: ms. */
 export const stale_after = 500;
+/** Bytes that the browser has not handed on for so long wait for the network. For a moment they wait on any computer that does something else. ms. */
+export const stalled_after = 100;
 const reconnect_after = 500;
 const answer_within = 3000;
 const most_counted = 200;
@@ -67,6 +69,8 @@ export class Link {
     private readonly lost_: (() => void)[] = [];
     private readonly came_: number[] = [];
     private socket_: WebSocket | undefined;
+    /** performance.now() when nothing waited to leave and something was sent. */
+    private empty_at_ = 0;
     private next_id_ = 1;
     private readonly waiting_ = new Map<number, { resolve: (answer: Answer) => void; timer: number }>();
 
@@ -96,9 +100,9 @@ export class Link {
     get stale(): boolean {
         return !this.opened || this.fresh_at === 0 || performance.now() - this.fresh_at > stale_after;
     }
-    /** Bytes that the browser could not hand on yet: a network that stalls. */
+    /** A network that stalls: what is sent does not leave the browser. */
     get stalled(): boolean {
-        return (this.socket_?.bufferedAmount ?? 0) > 0;
+        return (this.socket_?.bufferedAmount ?? 0) > 0 && performance.now() - this.empty_at_ > stalled_after;
     }
 
     /** Never rejects: a connection that ends is an answer, too. Nothing is kept for later where there is no connection. */
@@ -109,6 +113,7 @@ export class Link {
         return new Promise((resolve) => {
             const timer = window.setTimeout(() => this.answer(id, silent), answer_within);
             this.waiting_.set(id, { resolve, timer });
+            if (socket.bufferedAmount === 0) this.empty_at_ = performance.now();
             // `machine`: a page that shows one machine never moves another. `sent_ms`: what a stalled network delivers late is refused.
             socket.send(JSON.stringify({ type: 'command', id, machine: this.machine, sent_ms: performance.now(), ...request }));
         });
@@ -124,7 +129,10 @@ export class Link {
         this.socket_?.close();
     }
     watch(machine: string): void {
-        if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(JSON.stringify({ type: 'watch', machine }));
+        const socket = this.socket_;
+        if (socket?.readyState !== WebSocket.OPEN) return;
+        if (socket.bufferedAmount === 0) this.empty_at_ = performance.now();
+        socket.send(JSON.stringify({ type: 'watch', machine }));
     }
     allowed(cmd: string): boolean {
         return this.may === undefined || this.may.includes(cmd);

@@ -2,6 +2,7 @@
 import { Answer, Link } from '../link';
 import { Cursors, place_cursors } from './cursors';
 import { CsvFile } from './csv';
+import { seconds_of, time_signal } from './cycle_time';
 import { Live, load, Reader } from './pull';
 import { Setup, empty_setup, most_channels, SavedSetups } from './setup';
 import { Channel, first_choice, key_of, Signal } from './signals';
@@ -55,13 +56,7 @@ const again_after = 1000;
 const described = (scope: Record<string, unknown>): Map<string, Signal> => new Map((scope['signals'] as Signal[]).map((signal) => [signal.name, signal]));
 
 /** A cycle that was late has its own time: it comes with the samples. */
-const time_signal = 'time_s';
 const with_time = (names: readonly string[], signals: Map<string, Signal>): string[] => (names.length > 0 && signals.has(time_signal) && !names.includes(time_signal) ? [...names, time_signal] : [...names]);
-function seconds_of(store: Store, reader: Reader, cycle_ns: number, cycle: number): number {
-    const known = store.at(time_signal, cycle);
-    return Number.isNaN(known) ? (cycle * cycle_ns + reader.zero_ns) / 1e9 : known;
-}
-
 export class Session {
     setup: Setup;
     cursors: Cursors = { shown: false, a: 0, b: 0 };
@@ -150,7 +145,7 @@ export class Session {
         const live = new Live(reader);
         const scene: Scene = {
             kind: 'live', title: this.machine_, cycle_ns, signals: described(scope), store, view: new View(cycle_ns, this.setup.span_s),
-            seconds: (cycle) => seconds_of(store, reader, cycle_ns, cycle),
+            seconds: (cycle) => seconds_of(store, cycle, cycle_ns, reader.zero_ns),
             fetch: async (names) => {
                 const all = with_time(names, scene.signals), capacity = capacity_for(all.length, cycle_ns);
                 store.keep(all, capacity);
@@ -211,7 +206,7 @@ export class Session {
         view.show(kept.from, kept.to);
         let failed_at = -1e9;
         this.enter({ kind: 'recording', title: name, about: `${kept.source}: ${kept.alarm}`, cycle_ns, signals: described(scope), store, view, marker: { cycle: kept.alarm_cycle, kind: 'alarm', text: kept.alarm },
-            seconds: (cycle) => seconds_of(store, reader, cycle_ns, cycle),
+            seconds: (cycle) => seconds_of(store, cycle, cycle_ns, reader.zero_ns),
             fetch: async (names) => {
                 if (performance.now() - failed_at < again_after) return false;
                 if (!(await load(reader, with_time(names, this.scene?.signals ?? new Map()), kept.from, kept.to))) failed_at = performance.now();
