@@ -18,10 +18,10 @@ struct WebServer::Impl {
           files(std::move(its_files)),
           accounts(std::move(its_accounts)),
           feeds(io, options.machines, options.source, [this](Feed& feed) { hand_out(feed); }) {}
-    /// Who waits for an answer holds what the answer is for: nobody waits any more.
+    /// Who waits for an answer holds what the answer is for: nobody waits any more. And the list of pages, which each of them holds, holds them.
     ~Impl() {
         if (!site) return;
-        for (const auto& page : site->pages) page->end();
+        for (const auto& page : std::exchange(site->pages, {})) page->end();
         feeds.close();
         site->tell_unwritten(now(), true);
     }
@@ -121,6 +121,10 @@ WebServer::WebServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 WebServer::~WebServer() = default;
 
 std::uint16_t WebServer::port() const { return impl_->acceptor.local_endpoint().port(); }
+
+std::size_t WebServer::alive() const { return static_cast<std::size_t>(impl_->site.use_count() - 1); }
+
+std::weak_ptr<const void> WebServer::memory() const { return std::shared_ptr<const void>(impl_->site); }
 
 void WebServer::run() {
     asio::signal_set signals(impl_->io, SIGINT, SIGTERM);

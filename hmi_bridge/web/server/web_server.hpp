@@ -2,6 +2,7 @@
 // The page's server: HTTP for its files, a WebSocket for each page, a local connection to each machine and one more for each page that commands
 // (README.md has the protocol). One thread, the caller's, and one for passwords; a process of its own: never in a runtime.
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -43,6 +44,10 @@ public:
     ~WebServer();
 
     [[nodiscard]] std::uint16_t port() const;
+    /// Connections and pages that are in memory, also those that have ended and are still held. Any thread.
+    [[nodiscard]] std::size_t alive() const;
+    /// What they all share: gone when the server and all of them are.
+    [[nodiscard]] std::weak_ptr<const void> memory() const;
     /// Until stop(), or a signal of SIGINT, SIGTERM.
     void run();
     /// Any thread.

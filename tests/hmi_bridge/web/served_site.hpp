@@ -68,6 +68,9 @@ protected:
         if (thread_.joinable()) thread_.join();
         server_.reset();
     }
+    /// Connections and pages in the server's memory.
+    [[nodiscard]] std::size_t alive() const { return server_->alive(); }
+    [[nodiscard]] std::weak_ptr<const void> memory() const { return server_->memory(); }
     std::vector<PageJson> audit() {
         const std::lock_guard lock(mutex_);
         return audit_;
