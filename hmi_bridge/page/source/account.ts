@@ -39,12 +39,14 @@ export class Account {
         if (!user) this.user_.focus();
     }
     private async log_in(): Promise<void> {
+        const password = this.password_.value;
         this.submit_.disabled = true;
-        const status = await post('api/login', { user: this.user_.value, password: this.password_.value });
-        this.submit_.disabled = false;
         this.password_.value = '';
+        write(this.said_, '');  // of an earlier try, which is not this one's answer
+        const status = await post('api/login', { user: this.user_.value, password });
+        this.submit_.disabled = false;
         if (status !== 200) {
-            write(this.said_, '⚠ ' + say(status === 429 ? 'login_too_often' : status === 0 ? 'no_connection' : 'login_wrong'));
+            write(this.said_, '⚠ ' + say(status === 429 || status === 503 ? 'login_too_often' : status === 0 ? 'no_connection' : 'login_wrong'));
             this.password_.focus();
             return;
         }
