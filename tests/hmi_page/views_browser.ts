@@ -45,7 +45,7 @@ const plainly = (text: string | null) => (text ?? '').replace('−', '-');
 /** ms of machine time: the oldest renewal that is taken, how long a button stays pressed without one, and the task's next scan. */
 const renewal_age = 250, lease = 200, scan = 2 * 4;
 const cycle_ms = 4;
-const start_recorded = async (from: number): Promise<number[]> => recorded(cell.machine, 'pick_and_place.start', from, await newest(cell.machine));
+const start_recorded = async (from: number): Promise<number[]> => recorded(cell.machine, 'pick_and_place.start', from, await cell.cycle_from_now());  // what `state` said before is in it
 
 /** Held, and it stays TRUE for longer than any lease. A page that stands still on a busy computer lets go by itself and says so: then it is pressed anew, as a person would. */
 async function down(): Promise<void> {
