@@ -149,11 +149,18 @@ export class Cell {
         for (const pid of mine) process.kill(pid, signal);
         return mine.length;
     }
-    /** The browser takes the pointer away from a button that is held; it tells so with the pointer's next message. */
+    /** The browser takes the pointer away from a button that is held; it tells so with one of the pointer's next messages. */
     async lose_capture(button: Locator): Promise<void> {
-        await button.evaluate((held) => held.releasePointerCapture(1));
+        await button.evaluate((held) => {
+            held.addEventListener('lostpointercapture', () => held.setAttribute('data-lost', ''), { once: true });
+            held.releasePointerCapture(1);
+        });
         const box = await button.boundingBox();
-        if (box) await this.page.mouse.move(box.x + box.width / 2 + 2, box.y + box.height / 2 + 2);
+        let by = 2;
+        await until('the capture is lost', async () => {
+            if (box) await this.page.mouse.move(box.x + box.width / 2 + (by = -by), box.y + box.height / 2);
+            return (await button.getAttribute('data-lost')) !== null;
+        });
     }
     /** A fresh page, as of somebody who comes for the first time. */
     async look(hash = '', taste: Taste = {}): Promise<void> {
