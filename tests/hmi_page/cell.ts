@@ -149,18 +149,21 @@ export class Cell {
         for (const pid of mine) process.kill(pid, signal);
         return mine.length;
     }
-    /** The browser takes the pointer away from a button that is held; it tells so with one of the pointer's next messages. */
+    /** The browser takes the pointer away from a button that is held. It gives and takes a capture with the pointer's next message only: what is not given yet cannot be lost. */
     async lose_capture(button: Locator): Promise<void> {
-        await button.evaluate((held) => {
-            held.addEventListener('lostpointercapture', () => held.setAttribute('data-lost', ''), { once: true });
-            held.releasePointerCapture(1);
-        });
         const box = await button.boundingBox();
         let by = 2;
-        await until('the capture is lost', async () => {
+        const moved_until = (what: string, told: string) => until(what, async () => {
             if (box) await this.page.mouse.move(box.x + box.width / 2 + (by = -by), box.y + box.height / 2);
-            return (await button.getAttribute('data-lost')) !== null;
+            return (await button.getAttribute(told)) !== null;
         });
+        await button.evaluate((held) => {
+            held.addEventListener('pointermove', () => held.setAttribute('data-moved', ''), { once: true });
+            held.addEventListener('lostpointercapture', () => held.setAttribute('data-lost', ''), { once: true });
+        });
+        await moved_until('the capture is given', 'data-moved');
+        await button.evaluate((held) => held.releasePointerCapture(1));
+        await moved_until('the capture is lost', 'data-lost');
     }
     /** A fresh page, as of somebody who comes for the first time. */
     async look(hash = '', taste: Taste = {}): Promise<void> {
