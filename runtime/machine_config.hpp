@@ -19,6 +19,7 @@
 #include "programs/api/program_entry.hpp"
 #include "runtime/analog_axis.hpp"
 #include "runtime/io_point.hpp"
+#include "runtime/retain_config.hpp"
 #include "runtime/serial_config.hpp"
 
 namespace taktwerk::runtime {
@@ -222,9 +223,7 @@ struct MachineConfig {
     CycleWatch watch;
     RealtimeConfig realtime;
     SimulationConfig simulation;
-    /// Directory in which the positions of axes with absolute encoders are kept; empty: they are not. Simulated drives forget theirs with
-    /// the process, so a run on a simulated bus wants none or one of its own.
-    std::string retain;
+    RetainConfig retain;
     EvidenceConfig evidence;
     RecordingConfig recording;
     std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle

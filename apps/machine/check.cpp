@@ -435,7 +435,7 @@ int check(const CheckOptions& options) {
     const auto& served = loaded.hmi.modbus_server;
 
     // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
-    loaded.machine.retain.clear();
+    loaded.machine.retain.directory.clear();
     runtime::World world{config, Instant{}};
     auto built = runtime::Machine::build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);

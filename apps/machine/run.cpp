@@ -44,7 +44,6 @@
 #include "modbus/tcp/tcp_exchange.hpp"
 #include "runtime/alarms.hpp"
 #include "runtime/check/recording_memory.hpp"
-#include "runtime/positions/keeps_positions.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "runtime/run/virtual_runner.hpp"
 
@@ -55,6 +54,7 @@ namespace {
 using namespace runtime;
 
 struct RunOptions {
+    std::string start = "warm";
     std::string file, trace, pcap, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
@@ -130,6 +130,11 @@ void finish_recordings(const MachineLog& log, Instant now, FlightRecorder& recor
     }
 }
 
+void say_kept(const MachineLog& log, Instant now, const Machine& machine, const RunOptions& options) {
+    if (options.quiet) return;
+    for (auto& line : lines_of(machine.retain_notes())) log.say(now, "retain", std::move(line));
+}
+
 std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines,
                                std::vector<modbus::tcp::Exchange*> exchanges) {
     auto built = Machine::build(std::move(config), transport, std::move(lines), std::move(exchanges));
@@ -161,6 +166,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     SystemClock wall;
     const auto wall_start = wall.now();
     MachineLog log{*machine, clock.now(), options.json};
+    say_kept(log, clock.now(), *machine, options);
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
     VirtualRunner runner{*machine, world, clock};
@@ -272,6 +278,9 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     // For the page: in text, also what is not printed.
     const auto tail = std::make_shared<hmi::LogTail>();
     MachineLog kept{machine, start, false, [tail](const std::string& lines) { tail->add(lines); }};
+
+    say_kept(log, start, machine, options);
+    say_kept(kept, start, machine, options);
 
     hmi::RuntimeLink link{machine};
     hmi::HmiOptions bridge_options;
@@ -515,7 +524,9 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");
     add_duration(*sub, "--duration", options->duration_s, "machine time, e.g. 60s; default: until stopped");
     sub->add_option("--retain", options->retain,
-                    "keep the positions of axes with absolute encoders in this directory, also on a simulated bus");
+                    "keep variables, parameters and positions over a time without power in this directory, also on a simulated bus");
+    sub->add_option("--start", options->start, "which kept values it begins with: warm: all (default); cold: persistent ones; origin: none")
+        ->check(CLI::IsMember({"warm", "cold", "origin"}));
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
     sub->add_option("--evidence", options->evidence,
@@ -540,16 +551,15 @@ void add_run(CLI::App& app, Action& action) {
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
             if (options->without_events) loaded->machine.simulation.events.clear();
-            if (!options->retain.empty()) loaded->machine.retain = options->retain;
+            if (!options->retain.empty()) loaded->machine.retain.directory = options->retain;
+            loaded->machine.retain.start = options->start == "cold"     ? runtime::RetainStart::cold
+                                           : options->start == "origin" ? runtime::RetainStart::origin
+                                                                        : runtime::RetainStart::warm;
             if (!options->evidence.empty()) loaded->machine.evidence.directory = options->evidence;
             auto& recordings = loaded->machine.recording.directory;
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
-            if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))
-                print_warning(Error{"config.nothing_to_retain", "--retain " + options->retain,
-                                    "no axis has an absolute encoder: nothing will be kept",
-                                    "add `position_memory: {absolute: true}` to the axes that have one"});
             return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
         };
     });

@@ -23,7 +23,6 @@
 #include "hmi_bridge/modbus/offer.hpp"
 #include "runtime/check/program_check.hpp"
 #include "runtime/group_presence.hpp"
-#include "runtime/positions/keeps_positions.hpp"
 #include "runtime/presence_points.hpp"
 
 namespace taktwerk::config {
@@ -57,8 +56,8 @@ public:
             for (auto& device : out.machine.modbus) device.host.clear();
         }
         // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
-        for (auto* kept :
-             {&out.machine.retain, &out.machine.evidence.directory, &out.machine.recording.directory, &out.hmi.history.directory}) {
+        for (auto* kept : {&out.machine.retain.directory, &out.machine.evidence.directory, &out.machine.recording.directory,
+                           &out.hmi.history.directory}) {
             if (out.machine.bus.interface.empty()) kept->clear();
             else if (!kept->empty() && fs::path(*kept).is_relative())
                 *kept = (fs::path(path_).parent_path() / *kept).lexically_normal().string();
@@ -496,9 +495,6 @@ private:
                             writable > 0 ? fmt::format(" and may write {} of them", writable) : ""),
                 "keep that network for machines alone, or listen at 127.0.0.1");
         }
-        if (!out.machine.retain.empty() && !runtime::keeps_positions(out.machine))
-            warn("retain", "config.nothing_to_retain", "no axis has an absolute encoder: nothing will be kept",
-                 "add `position_memory: {absolute: true}` to the axes that have one, or remove `retain`");
     }
 
     void problem(const std::string& path, std::string code, std::string what, std::string remedy) {

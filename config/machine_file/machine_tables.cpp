@@ -462,6 +462,33 @@ Table<runtime::EvidenceConfig> evidence_table() {
         {}};
 }
 
+/// A directory alone, or with how often and on which input.
+Codec<runtime::RetainConfig> retain() {
+    using R = runtime::RetainConfig;
+    const auto whole =
+        section(Table<R>{"retain",
+                         "What is kept over a time without power: variables and blocks that programs keep, parameters that operators set, "
+                         "positions of axes with "
+                         "absolute encoders.",
+                         {
+                             required(field("directory", &R::directory, text(), "its folder, this machine's alone; relative to this file")),
+                             field("every", &R::every, duration(std::chrono::milliseconds{10}, std::chrono::hours{1}),
+                                   "values that change are written at most this often: no more is lost with the power"),
+                             with_default(field("power_fail", &R::power_fail, text(),
+                                                "input that is TRUE when the supply fails: values are written at once"),
+                                          "none"),
+                         },
+                         {},
+                         {}});
+    Codec<R> c;
+    c.shape.kind = Shape::Kind::either;
+    c.shape.alternatives = {std::make_shared<const Shape>(text().shape), std::make_shared<const Shape>(whole.shape)};
+    c.read = [whole](Reader& reader, const Node& node, R& out) {
+        return node.kind == Node::Kind::map ? whole.read(reader, node, out) : text().read(reader, node, out.directory);
+    };
+    return c;
+}
+
 Table<hmi::HistoryConfig> history_table() {
     using H = hmi::HistoryConfig;
     return {"history",
@@ -584,10 +611,9 @@ Table<MachineFile> machine_table() {
     f.push_back(field_at<F>(
         "realtime", [](F & m) -> auto& { return m.machine.realtime; }, section(realtime_table()), "what is asked of the operating system"));
     f.push_back(with_default(field_at<F>(
-                                 "retain", [](F & m) -> auto& { return m.machine.retain; }, text(),
-                                 "directory in which the positions of axes with absolute encoders are kept over a time without power; "
-                                 "relative to this file"),
-                             "none: they are homed after each start"));
+                                 "retain", [](F & m) -> auto& { return m.machine.retain; }, retain(),
+                                 "what is kept over a time without power: a directory, relative to this file, or a section with more"),
+                             "none: programs begin with their first values, axes are homed after each start"));
     f.push_back(with_default(field_at<F>(
                                  "evidence", [](F & m) -> auto& { return m.machine.evidence; }, section(evidence_table()),
                                  "what was on the bus around each alarm that stops something, as a file for Wireshark"),

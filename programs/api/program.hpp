@@ -9,6 +9,7 @@
 //           lamp_ = d.output("lamp_run");
 //           speed_ = d.parameter("speed", {.value = 200, .minimum = 10, .maximum = 500, .unit = "mm/s", .doc = "transfer speed"});
 //           d.monitor("step", step_, "", "step of the sequence");
+//           d.retain("pieces", pieces_);
 //           d.task<&Cell::scan>("main");
 //       }
 //       void scan(taktwerk::TaskContext& ctx) {
@@ -27,46 +28,29 @@
 //
 // What a builder learns step by step stands in docs/programming.md.
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 
 #include "axes/axis/motion_context.hpp"
 #include "core/alarm.hpp"
+#include "fb_library/block_type.hpp"
+#include "programs/api/declared.hpp"
 #include "programs/api/task_context.hpp"
 
 namespace taktwerk {
 
 using axes::AxisRef;
 
-/// What a parameter may be. `whole`: a count, a number of a recipe; 1.5 is refused in the machine file and to the operator, and get() gives
-/// the number exactly.
-enum class ParameterKind : std::uint8_t { real, whole };
-
-/// All in `unit`. minimum <= value <= maximum, otherwise the machine does not start. The machine file may set another value.
-struct ParameterSpec {
-    double value = 0;                 ///< default
-    double minimum = 0, maximum = 0;  ///< inclusive; the runtime refuses anything else, also from the operator
-    std::string_view unit{};
-    std::string_view doc{};
-    ParameterKind kind = ParameterKind::real;
-};
-
-/// What a person may write, in `unit`: minimum <= value <= maximum, whole where the variable is. The variable's own first value is its default
-/// and must lie inside, else the machine does not start.
-struct OperatorValueSpec {
-    double minimum = 0, maximum = 0;  ///< inclusive; not looked at for switches and buttons, which are FALSE or TRUE
-    std::string_view unit{};
-    std::string_view doc{};
-    std::string_view task{};  ///< whose scans it is for, and who alone reads or writes it; needed where the program has several tasks
-};
-
-/// Types of monitored variables.
-enum class VariableType : std::uint8_t { boolean, int32, int64, uint16, uint32, real, duration };
-
-/// How a person changes a variable.
-enum class OperatorValueKind : std::uint8_t { value, toggle, button };
+namespace detail {
+template <class T>
+inline constexpr bool is_array = false;
+template <class T, std::size_t N>
+inline constexpr bool is_array<std::array<T, N>> = true;
+}  // namespace detail
 
 /// Collects what a program needs. A name that the configuration lacks is an error that names it and the nearest one;
 /// handles stay invalid then, and the program is not started.
@@ -149,6 +133,22 @@ public:
         add_operator_value(name, VariableType::boolean, &v, spec, OperatorValueKind::button);
     }
 
+    /// Keeps a variable, an array, or a whole block over a time without power, where the machine file has `retain`. It is kept by name and type:
+    /// an edited program finds what it still has, and what fits another type (DINT to LINT) is converted (docs/retain.md). It must be a member of
+    /// the program, of a type that a pin may have. What was kept stands in it before start() and the first scan; a program that is new, or
+    /// whose variable is, finds the value that its constructor gave. Written is what stands there between two scans, all of a program of the same
+    /// one. `task`: whose variable it is, and who alone writes it; needed where it is not the base task's.
+    /// Of a block its pins are kept, and while its type is the same all of it: a counter does not count an edge twice, a timer goes on at its ET,
+    /// a command that was under way is CommandAborted. Handles (Axis) are not kept.
+    template <class T>
+    void retain(std::string_view name, T& v, std::string_view task = {}) {
+        keep(RetainKind::retain, name, v, task);
+    }
+    template <class T>
+    void persistent(std::string_view name, T& v, std::string_view task = {}) {
+        keep(RetainKind::persistent, name, v, task);
+    }
+
     /// Anything else would be converted into a temporary whose address is kept: an enumeration, a float, a short, a sum.
     template <class T>
     void monitor(std::string_view name, const T& v, std::string_view unit = {}, std::string_view doc = {}) = delete;
@@ -178,8 +178,29 @@ protected:
     virtual void add_block(std::string_view name, const void* begin, std::size_t size) = 0;
     virtual void add_operator_value(std::string_view name, VariableType type, void* address, const OperatorValueSpec& spec,
                                     OperatorValueKind kind) = 0;
+    virtual void add_retained(RetainKind kind, std::string_view name, const fb::PinType& type, void* address, std::string_view task) = 0;
+    virtual void add_retained_block(RetainKind kind, std::string_view name, const fb::BlockType& type, void* address,
+                                    std::string_view task) = 0;
 
 private:
+    template <class T>
+    void keep(RetainKind kind, std::string_view name, T& v, std::string_view task) {
+        static_assert(!std::is_const_v<T>, "what is kept is written at the start: it cannot be const");
+        if constexpr (detail::is_array<T>) {
+            for (std::size_t i = 0; i < v.size(); ++i) keep(kind, std::string(name) + "[" + std::to_string(i) + "]", v[i], task);
+        } else if constexpr (requires { T::pins(); }) {
+            static constexpr fb::BlockType type = fb::block_type<T>();
+            add_retained_block(kind, name, type, &v, task);
+        } else {
+            static_assert(
+                requires { fb::PinTypeOf<T>::value; },
+                "kept are types that a pin may have (bool, std::int32_t, double, Duration, ...), arrays of them, and blocks");
+            constexpr auto pin = fb::PinTypeOf<T>::value.kind;
+            static_assert(pin != fb::PinKind::AXIS_REF && pin != fb::PinKind::DEVICE_REF && pin != fb::PinKind::HANDLE,
+                          "a handle means nothing after a restart: declare it again");
+            add_retained(kind, name, fb::PinTypeOf<T>::value, &v, task);
+        }
+    }
     template <class P>
     struct Class;
     template <class P>

@@ -40,6 +40,7 @@ public:
         check_io();
         check_tasks();
         if (!config_.emergency_stop.input.empty()) check_emergency_stop();
+        check_retain();
         check_events();
     }
 
@@ -114,6 +115,14 @@ private:
         if (restart == config_.emergency_stop.input)
             problems_.add("machine.emergency_stop_input", "emergency_stop.restart", "it is the emergency stop itself",
                           "give the input of a button of its own");
+    }
+
+    void check_retain() {
+        const auto& retain = config_.retain;
+        if (!retain.power_fail.empty() && !has(inputs_, retain.power_fail))
+            problems_.unknown("retain.power_fail", "retain.power_fail", "input", retain.power_fail, inputs_);
+        if (retain.every < std::chrono::milliseconds{1})
+            problems_.add("retain.every", "retain.every", "it writes without an end", "use for instance 1 s");
     }
 
     void check_events() {

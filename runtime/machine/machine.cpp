@@ -60,7 +60,7 @@ void Machine::service_bus(Instant now) {
 }
 void Machine::service_programs() { impl_->programs.call_hooks(); }
 void Machine::service_disk(Instant now) {
-    if (impl_->positions) impl_->positions->step(now);
+    if (impl_->retain) impl_->retain->step(now);
 }
 std::size_t Machine::modbus_count() const noexcept { return impl_->modbus.count(); }
 void Machine::service_modbus(std::size_t device, Instant now) { impl_->modbus.step(device, now); }
@@ -110,7 +110,10 @@ Machine::TaskNames Machine::task_names(std::size_t task) const {
     return {found.config.program, found.config.name};
 }
 std::string Machine::program_at_work() const { return impl_->programs.at_work(); }
-bool Machine::disk_at_work() const noexcept { return impl_->positions && impl_->positions->writing(); }
+std::span<const RetainNote> Machine::retain_notes() const noexcept {
+    return impl_->retain ? std::span<const RetainNote>{impl_->retain->notes()} : std::span<const RetainNote>{};
+}
+bool Machine::disk_at_work() const noexcept { return impl_->retain && impl_->retain->writing(); }
 MachinePhase Machine::phase() const noexcept { return impl_->body.phase.load(std::memory_order_acquire); }
 void Machine::record(Recorder& recorder) noexcept {
     impl_->body.recorder = &recorder;

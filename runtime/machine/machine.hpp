@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -25,6 +26,7 @@
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/recording/signal_ring.hpp"
+#include "runtime/retain/retain_note.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/stop_levels.hpp"
 
@@ -62,7 +64,7 @@ public:
     void service_bus(Instant now);
     /// start() and stop() of programs: foreign code, it may take any time.
     void service_programs();
-    /// Positions onto the disk: it waits until they are there.
+    /// What is kept onto the disk: it waits until it is there.
     void service_disk(Instant now);
     /// Modbus TCP devices: one thread for each. A step takes the device's `timeout` at most; end_modbus() likewise: when the cycle has
     /// ended it writes outputs that changed, until it says false.
@@ -121,7 +123,9 @@ public:
     /// "task 'plan' of program 'cell'", or "start() of ...": code of a program that runs beside the cycle and has not returned; empty: none.
     /// Any thread.
     [[nodiscard]] std::string program_at_work() const;
-    /// The positions are being written: one call of the disk that has not come back yet. Any thread.
+    /// What became of the kept values of programs and parameters at the start. Any thread.
+    [[nodiscard]] std::span<const RetainNote> retain_notes() const noexcept;
+    /// What is kept is being written: one call of the disk that has not come back yet. Any thread.
     [[nodiscard]] bool disk_at_work() const noexcept;
     [[nodiscard]] MachinePhase phase() const noexcept;
     /// Every signal of every cycle since arm(), the newest of them: for any number of readers, each on any thread (signal_ring.hpp). Its

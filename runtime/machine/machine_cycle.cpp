@@ -18,11 +18,11 @@ std::array<std::string_view, step_count - 1> measured_steps() {
     return names;
 }
 
-std::unique_ptr<PositionKeeper> kept_positions(MachineBody& body, std::vector<Error>& errors) {
+std::unique_ptr<RetainKeeper> kept(MachineBody& body, std::vector<Error>& errors) {
     if (body.config.retain.empty()) return nullptr;
-    auto positions = std::make_unique<PositionKeeper>(body.config.retain, body.config.axes, errors);
-    positions->restore(body.axes);
-    return positions;
+    auto keeper = std::make_unique<RetainKeeper>(body.config.retain, body.config.axes, errors);
+    keeper->restore(body.axes);
+    return keeper;
 }
 
 }  // namespace
@@ -33,19 +33,30 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       drives(body, lines, errors),
       groups(body, drives),
       modbus(body, exchanges, errors),
-      positions(kept_positions(body, errors)),
+      retain(kept(body, errors)),
       hands(body),
       measuring(body, hands),
       programs(body, hands, errors),
       desk(body, hands, measuring, programs),
-      supervisor(body, drives, groups, modbus, programs, desk, positions.get()),
+      supervisor(body, drives, groups, modbus, programs, desk, retain.get()),
       snapshots(body, measuring, programs),
       layout(layout_of(body, drives, programs.host())),
       rows(body, programs, layout),
       words(body, drives, groups, modbus, programs, supervisor, layout),
       steps(measured_steps()) {
+    restore_values();
     // Now the programs have declared their tables.
     for (auto& axis : body.axes) axis.bind({body.axes.data(), body.axes.size(), &body.tables, body.io.inputs()});
+}
+
+void Machine::Impl::restore_values() {
+    if (!retain) return;
+    auto& host = programs.host();
+    std::vector<RetainBound> bounds;
+    for (const auto& value : host.operator_values()) bounds.push_back({value.address, &host.variable(value.variable)});
+    retain->restore(host.retained(), layout.parameters, host.parameters(), bounds);
+    programs.restored(retain->warm_blocks());
+    if (!body.config.retain.power_fail.empty()) power_fail = body.io.find(IoDirection::input, body.config.retain.power_fail);
 }
 
 Result<void> Machine::Impl::arm() {
@@ -168,7 +179,11 @@ void Machine::Impl::tell(const CycleTick& tick) noexcept {
     measuring.keep();
     snapshots.step();
     rows.step();
-    if (positions) positions->watch(body.axes, body.now, body.shutting_down);
+    if (!retain) return;
+    programs.read_retained();
+    auto& image = programs.retained();
+    const bool fails = power_fail >= 0 && body.io.inputs()[static_cast<std::size_t>(power_fail)] != 0;
+    retain->watch(body.axes, {image.bytes(), image.take_changed(), programs.parameters()}, body.now, body.shutting_down, fails);
 }
 
 }  // namespace taktwerk::runtime

@@ -20,7 +20,7 @@
 #include "runtime/machine/row_writer.hpp"
 #include "runtime/machine/snapshot_writer.hpp"
 #include "runtime/machine/supervisor.hpp"
-#include "runtime/positions/position_keeper.hpp"
+#include "runtime/retain/retain_keeper.hpp"
 
 namespace taktwerk::runtime {
 
@@ -37,6 +37,8 @@ struct Machine::Impl {
     void tell(const CycleTick& tick) noexcept;
     /// People have asked for it.
     void reset_statistics() noexcept;
+    /// What was kept into variables and parameters.
+    void restore_values();
     void done(Step step) noexcept { steps.done(static_cast<std::size_t>(step)); }
 
     Result<void> arm();
@@ -47,7 +49,7 @@ struct Machine::Impl {
     MachineDrives drives;
     HotConnect groups;
     ModbusDevices modbus;
-    std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept
+    std::unique_ptr<RetainKeeper> retain;  // nullptr: nothing is kept
     HandMotion hands;
     Measuring measuring;
     ProgramRunner programs;
@@ -59,6 +61,7 @@ struct Machine::Impl {
     AlarmWords words;
     StepStatistics<step_count - 1> steps;
     CycleHistograms times;
+    int power_fail = -1;                        // input point
     std::atomic<bool> outputs_laid_out{false};  // the cycle may write them although nothing runs yet
     std::atomic<std::uint64_t> pulse_cycles{0};
 };

@@ -35,6 +35,8 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
       hands_(hands),
       host_(body.config, body.io, body.tables, errors),
       values_(host_),
+      retained_(host_.retained()),
+      kept_by_slow_(host_.retained().size()),
       claims_(body.config.axes.size()),
       objects_(body.config.programs.size(), body.bus.slave_count()) {
     for (std::size_t p = 0; p < body.config.programs.size(); ++p)
@@ -53,7 +55,7 @@ void ProgramRunner::build_tasks() {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
         const auto& task = tasks[i];
         if (task.config.divisor == 1) {
-            base_tasks_.push_back({i, 0});
+            base_tasks_.push_back({i, 0, {}});
             continue;
         }
         auto shows = variables_of(i);
@@ -62,12 +64,18 @@ void ProgramRunner::build_tasks() {
             variables.push_back(host_.variables()[place]);
             shown_by_slow_[place] = true;
         }
+        auto keeps = kept_of(i);
+        std::vector<MemoryCopy::Source> kept;
+        for (const auto place : keeps) {
+            kept.push_back({host_.retained()[place].address, host_.retained()[place].size});
+            kept_by_slow_[place] = true;
+        }
         auto& io = body_.io;
         slow_tasks_.push_back(
             {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
-                                        body_.tables, values_.count_of(i)),
-             i, 0, std::move(shows)});
+                                        body_.tables, values_.count_of(i), std::move(kept)),
+             i, 0, std::move(shows), std::move(keeps)});
     }
 }
 
@@ -84,6 +92,40 @@ std::vector<std::size_t> ProgramRunner::variables_of(std::size_t task) const {
         if (mine) out.push_back(i);
     }
     return out;
+}
+
+/// Whose memory a kept item is: the task that its declaration names, else the program's base task, else its first one.
+std::size_t ProgramRunner::keeper_of(const RetainedItem& item) const noexcept {
+    if (item.task != RetainedItem::no_task) return item.task;
+    std::size_t first = RetainedItem::no_task;
+    for (std::size_t i = 0; i < host_.tasks().size(); ++i) {
+        if (host_.tasks()[i].program != item.program) continue;
+        if (host_.tasks()[i].config.divisor == 1) return i;
+        if (first == RetainedItem::no_task) first = i;
+    }
+    return first;
+}
+
+std::vector<std::size_t> ProgramRunner::kept_of(std::size_t task) const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < host_.retained().size(); ++i)
+        if (keeper_of(host_.retained()[i]) == task) out.push_back(i);
+    return out;
+}
+
+void ProgramRunner::restored(std::span<const std::size_t> warm_blocks) {
+    for (std::size_t i = 0; i < host_.variables().size(); ++i) variable_values_[i] = ProgramHost::read(host_.variables()[i]);
+    for (auto& slow : slow_tasks_) slow.task->show_variables();
+    for (const auto place : warm_blocks) {
+        const auto& item = host_.retained()[place];
+        const auto task = keeper_of(item);
+        for (auto& base : base_tasks_)
+            if (base.place == task) base.warm.push_back({item.block, item.address});
+        for (auto& slow : slow_tasks_)
+            if (slow.place == task) slow.task->add_warm_block({item.block, item.address});
+    }
+    read_retained();
+    (void)retained_.take_changed();
 }
 
 void ProgramRunner::learn_outputs() noexcept {

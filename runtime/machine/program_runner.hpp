@@ -12,6 +12,7 @@
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/operator_values.hpp"
+#include "runtime/machine/retained_image.hpp"
 #include "runtime/tasks/object_requests.hpp"
 #include "runtime/tasks/program_host.hpp"
 #include "runtime/tasks/program_record.hpp"
@@ -33,6 +34,10 @@ public:
     void raise_alarms() noexcept;
     /// What the variables are at the end of this cycle.
     void read_variables() noexcept;
+    /// The same of what is kept over a time without power. Of a program whose start() or stop() is at work, or which is no slow task's turn, it
+    /// stays what it was.
+    void read_retained() noexcept;
+    [[nodiscard]] RetainedImage& retained() noexcept { return retained_; }
 
     /// `after`: OperatorCommand::after; 0 where it starts by itself. False: its stop() is still to come.
     [[nodiscard]] bool start(std::size_t program, std::uint64_t after) noexcept;
@@ -66,6 +71,9 @@ public:
     /// Of the last cycle.
     [[nodiscard]] const LongestTask& longest_base_task() const noexcept { return longest_base_task_; }
 
+    /// Before the first scan: what was kept stands in the variables, and these items are blocks that go on. Not real-time.
+    void restored(std::span<const std::size_t> warm_blocks);
+
     // --- other threads -----------------------------------------------------------------------------------------------------------
     /// start() and stop() that were asked for.
     void call_hooks();
@@ -80,23 +88,28 @@ public:
     [[nodiscard]] std::string fault(std::size_t program) const;
     [[nodiscard]] std::int32_t base_task_at_work() const noexcept { return pulse_task_.load(std::memory_order_relaxed); }
 
+    [[nodiscard]] ProgramHost& host() noexcept { return host_; }
     [[nodiscard]] const ProgramHost& host() const noexcept { return host_; }
 
 private:
     struct BaseTask {
-        std::size_t place = 0;    // in host_.tasks(), task_statistics_, the layout
-        std::uint64_t scans = 0;  // since its program's start
+        std::size_t place = 0;                    // in host_.tasks(), task_statistics_, the layout
+        std::uint64_t scans = 0;                  // since its program's start
+        std::vector<SlowTask::WarmBlock> warm{};  // before its first scan
     };
     struct SlowPlace {
         std::unique_ptr<SlowTask> task;
         std::size_t place = 0;
         std::uint16_t overruns = 0;      // in a row
         std::vector<std::size_t> shows;  // the variables that are read after its runs
+        std::vector<std::size_t> keeps;  // what is kept of its memory: places in host_.retained()
     };
 
     // program_runner.cpp
     void build_tasks();
     [[nodiscard]] std::vector<std::size_t> variables_of(std::size_t task) const;
+    [[nodiscard]] std::vector<std::size_t> kept_of(std::size_t task) const;
+    [[nodiscard]] std::size_t keeper_of(const RetainedItem& item) const noexcept;
     void take_handshakes() noexcept;
     void failed(std::size_t program, const FaultText& why) noexcept;
     void end_motion(std::size_t axis) noexcept;
@@ -116,6 +129,8 @@ private:
     HandMotion& hands_;
     ProgramHost host_;
     OperatorValues values_;
+    RetainedImage retained_;
+    std::vector<bool> kept_by_slow_;  // as host_.retained()
     std::vector<AxisClaims> claims_;  // per axis
     ProgramRecords programs_;
     ObjectRequests objects_;

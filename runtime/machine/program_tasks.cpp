@@ -33,6 +33,8 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
     context.alarms = program.alarms;
     context.first_scan = context.cycle == 0;
     values_.apply(base.place);
+    for (const auto& block : base.warm) block.type->warm_start(block.address, context.now);
+    base.warm.clear();
     pulse_task_.store(static_cast<std::int32_t>(base.place), std::memory_order_relaxed);
     try {
         const ProgramCode code{task.config.program.c_str(), task.config.name.c_str()};
@@ -170,6 +172,29 @@ void ProgramRunner::read_variables() noexcept {
         const auto values = slow.task->variables();
         if (slow.task->applied() == 0) continue;
         for (std::size_t i = 0; i < values.size(); ++i) variable_values_[slow.shows[i]] = values[i];
+    }
+}
+
+// A program at rest is read directly: nothing of it is at work, so that what its stop() has done is kept, too.
+void ProgramRunner::read_retained() noexcept {
+    const auto& items = host_.retained();
+    const auto at_rest = [&](std::size_t p) {
+        return !programs_[p].running() && programs_[p].handshake.load(std::memory_order_acquire) == Handshake::none &&
+               slow_tasks_finished(p);
+    };
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const auto p = items[i].program;
+        const bool between_scans = programs_[p].running() && !kept_by_slow_[i];
+        if (between_scans || at_rest(p)) retained_.take(i, items[i].address, items[i].size);
+    }
+    for (const auto& slow : slow_tasks_) {
+        const auto bytes = slow.task->kept();
+        if (bytes.empty() || !programs_[slow.task->program()].running()) continue;
+        const auto* from = bytes.data();
+        for (const auto place : slow.keeps) {
+            retained_.take(place, from, items[place].size);
+            from += items[place].size;
+        }
     }
 }
 

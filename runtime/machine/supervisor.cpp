@@ -17,14 +17,14 @@ constexpr Duration reset_takes = std::chrono::seconds{1};
 }  // namespace
 
 Supervisor::Supervisor(MachineBody& body, MachineDrives& drives, HotConnect& groups, ModbusDevices& modbus, ProgramRunner& programs,
-                       OperatorDesk& desk, const PositionKeeper* positions)
+                       OperatorDesk& desk, const RetainKeeper* retain)
     : body_(body),
       drives_(drives),
       groups_(groups),
       modbus_(modbus),
       programs_(programs),
       desk_(desk),
-      positions_(positions),
+      retain_(retain),
       emergency_inputs_(body, programs, desk),
       late_cycles_(body, programs),
       drive_emergencies_(body, drives),
@@ -44,7 +44,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     groups_.watch();
     modbus_.watch();
     raise_rivals();
-    raise_positions();
+    raise_retain();
     raise_inputs();
     raise_forces();
 
@@ -75,11 +75,12 @@ void Supervisor::raise_rivals() noexcept {
             body_.raise(MachineAlarm::axis_of_two_programs, AlarmSource::axis, static_cast<std::uint16_t>(i), rivals.winner, rivals.loser);
 }
 
-void Supervisor::raise_positions() noexcept {
-    if (!positions_) return;
-    if (positions_->lost()) body_.raise(MachineAlarm::positions_lost, AlarmSource::machine, 0);
-    if (positions_->outdated()) body_.raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0);
-    else if (positions_->failing() || positions_->hangs(body_.now)) body_.raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0);
+void Supervisor::raise_retain() noexcept {
+    if (!retain_) return;
+    if (retain_->positions_lost()) body_.raise(MachineAlarm::positions_lost, AlarmSource::machine, 0);
+    if (retain_->values_lost() && body_.cycles == 0) body_.raise(MachineAlarm::values_lost, AlarmSource::machine, 0);
+    if (retain_->outdated()) body_.raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0);
+    else if (retain_->failing() || retain_->hangs(body_.now)) body_.raise(MachineAlarm::retain_not_written, AlarmSource::machine, 0);
 }
 
 void Supervisor::raise_inputs() noexcept {

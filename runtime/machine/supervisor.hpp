@@ -15,15 +15,15 @@
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/machine/shutdown.hpp"
-#include "runtime/positions/position_keeper.hpp"
+#include "runtime/retain/retain_keeper.hpp"
 
 namespace taktwerk::runtime {
 
 class Supervisor {
 public:
-    /// `positions`: nullptr where none are kept.
+    /// `retain`: nullptr where nothing is kept.
     Supervisor(MachineBody& body, MachineDrives& drives, HotConnect& groups, ModbusDevices& modbus, ProgramRunner& programs,
-               OperatorDesk& desk, const PositionKeeper* positions);
+               OperatorDesk& desk, const RetainKeeper* retain);
 
     void step(const CycleTick& tick) noexcept;
 
@@ -34,7 +34,7 @@ public:
 private:
     void raise_bus_alarms() noexcept;
     void raise_rivals() noexcept;
-    void raise_positions() noexcept;
+    void raise_retain() noexcept;
     void raise_inputs() noexcept;
     void raise_forces() noexcept;
     void supervise(std::size_t axis, axes::EmergencyStop level) noexcept;
@@ -49,7 +49,7 @@ private:
     ModbusDevices& modbus_;
     ProgramRunner& programs_;
     OperatorDesk& desk_;
-    const PositionKeeper* positions_;
+    const RetainKeeper* retain_;
     EmergencyInputs emergency_inputs_;
     LateCycles late_cycles_;
     DriveEmergencies drive_emergencies_;

@@ -18,7 +18,7 @@ constexpr Duration threads_home = 5s;   // the disk, too, must have taken the la
 std::string EndWatch::who() const {
     if (stuck_) return stuck_->text();
     if (const auto code = machine_.program_at_work(); !code.empty()) return code + " does not return";
-    if (machine_.disk_at_work()) return "a disk does not take the positions of the axes";
+    if (machine_.disk_at_work()) return "a disk does not take what is kept";
     return "the bus or the system did not end in time";
 }
 

@@ -12,6 +12,8 @@
 #include "axes/tables/cam_check.hpp"
 #include "core/nearest_name.hpp"
 #include "runtime/present_slaves.hpp"
+#include "runtime/retain/kept_text.hpp"
+#include "runtime/retain/value_type.hpp"
 
 namespace taktwerk::runtime {
 
@@ -135,6 +137,8 @@ public:
     /// After declare(): configured names that the program does not know, and whose the operator values are.
     void check_configuration() {
         find_owners();
+        find_retained_tasks();
+        refuse_kept_buttons();
         const auto& program = config_.programs[program_];
         for (const auto& set : program.parameters) {
             bool known = false;
@@ -179,6 +183,31 @@ protected:
         host_.operator_values_.push_back({host_.variables_.size() - 1, address, host_.tasks_.size(), info.momentary});
         owners_.push_back({std::string(name), std::string(spec.task)});
     }
+    RetainedItem& add_kept(RetainKind kind, std::string_view name, std::string_view task) {
+        once(retained_names_, name, "kept variable");
+        retained_names_.emplace_back(name);
+        retained_tasks_.emplace_back(task);
+        auto& item = host_.retained_.emplace_back();
+        item.name = fmt::format("{}.{}", config_.programs[program_].name, name);
+        item.kind = kind;
+        item.program = program_;
+        return item;
+    }
+    void add_retained(RetainKind kind, std::string_view name, const fb::PinType& type, void* address, std::string_view task) override {
+        add_kept(kind, name, task).type = type.kind;
+        host_.retained_.back().address = address;
+        host_.retained_.back().size = size_of(type.kind);
+    }
+    void add_retained_block(RetainKind kind, std::string_view name, const fb::BlockType& type, void* address,
+                            std::string_view task) override {
+        add_kept(kind, name, task).block = &type;
+        host_.retained_.back().address = address;
+        host_.retained_.back().size = type.size;
+        if (type.size > largest_kept_block)
+            problem("program.retain_size",
+                    fmt::format("'{}' has {} bytes, and a block that is kept has at most {}", name, type.size, largest_kept_block),
+                    "keep the variables of it that matter");
+    }
     void add_task(std::string_view name, TaskFunction function) override {
         once(task_names_, name, "task");
         task_names_.emplace_back(name);
@@ -213,6 +242,26 @@ private:
                     task_names_.empty() ? "declare a task" : fmt::format("write .task = \"{}\" in its declaration", task_names_.front()));
             else unknown("program.unknown_task", "task", task, task_names_, "the program's tasks");
         }
+    }
+    void find_retained_tasks() {
+        const auto first = host_.retained_.size() - retained_tasks_.size();
+        const auto first_task = host_.tasks_.size() - task_names_.size();
+        for (std::size_t i = 0; i < retained_tasks_.size(); ++i) {
+            if (retained_tasks_[i].empty()) continue;
+            const auto found = std::find(task_names_.begin(), task_names_.end(), retained_tasks_[i]);
+            if (found != task_names_.end())
+                host_.retained_[first + i].task = first_task + static_cast<std::size_t>(found - task_names_.begin());
+            else unknown("program.unknown_task", "task", retained_tasks_[i], task_names_, "the program's tasks");
+        }
+    }
+    /// Nobody holds a button after a restart.
+    void refuse_kept_buttons() {
+        for (std::size_t i = host_.retained_.size() - retained_names_.size(); i < host_.retained_.size(); ++i)
+            for (const auto& value : host_.operator_values_)
+                if (value.momentary && value.address == host_.retained_[i].address)
+                    problem("program.retain_button",
+                            fmt::format("'{}' is a button and kept: after a restart it would be held by nobody", host_.retained_[i].name),
+                            "do not keep it; a switch (operator_switch) may be kept");
     }
     /// What a variable holds exactly; a double tells whole numbers apart up to 2^53.
     static std::pair<double, double> range_of(VariableType type) noexcept {
@@ -315,7 +364,7 @@ private:
     axes::MotionTables& tables_;
     std::size_t program_;
     std::vector<Error>& errors_;
-    std::vector<std::string> parameter_names_, task_names_, variable_names_;
+    std::vector<std::string> parameter_names_, task_names_, variable_names_, retained_names_, retained_tasks_;
     std::vector<std::pair<std::string, std::string>> owners_;  // of its operator values: name, task
 };
 

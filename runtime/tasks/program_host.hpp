@@ -9,6 +9,7 @@
 #include "core/result.hpp"
 #include "programs/api/program.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/retain/retained_item.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/tasks/io_image.hpp"
 #include "runtime/tasks/program_library.hpp"
@@ -57,6 +58,7 @@ public:
     [[nodiscard]] const std::vector<Task>& tasks() const noexcept { return tasks_; }
     [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
     [[nodiscard]] const std::vector<OperatorValue>& operator_values() const noexcept { return operator_values_; }
+    [[nodiscard]] const std::vector<RetainedItem>& retained() const noexcept { return retained_; }
     [[nodiscard]] const MachineLayout::Variable& variable(std::size_t index) const { return variable_info_[index]; }
     [[nodiscard]] std::vector<double>& parameters() noexcept { return parameters_; }
     [[nodiscard]] const std::vector<double>& parameters() const noexcept { return parameters_; }
@@ -92,6 +94,7 @@ private:
     std::vector<Variable> variables_;
     std::vector<MachineLayout::Variable> variable_info_;
     std::vector<OperatorValue> operator_values_;
+    std::vector<RetainedItem> retained_;
     std::vector<double> parameters_;
     std::vector<MachineLayout::ParameterInfo> parameter_info_;
     std::vector<MachineLayout::Block> blocks_;

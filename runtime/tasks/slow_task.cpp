@@ -9,11 +9,11 @@ namespace taktwerk::runtime {
 
 SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
                    std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables,
-                   std::size_t writes)
+                   std::size_t writes, std::vector<MemoryCopy::Source> kept)
     : task_(task),
       program_(program),
       divisor_(task.config.divisor),
-      variables_(std::move(variables)),
+      left_{VariableCopy(std::move(variables)), MemoryCopy(std::move(kept))},
       requests_(axes),
       objects_(objects),
       tables_(tables),
@@ -35,7 +35,9 @@ void SlowTask::apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, 
     ++applied_;
     const auto changed = alarms_ ^ alarms_at_release_;
     program_alarms = (program_alarms & ~changed) | (alarms_ & changed);
-    variables_.apply();
+    left_.variables.apply();
+    left_.kept.apply();
+    left_.kept_fresh = true;
     state_.store(State::idle, std::memory_order_relaxed);
 }
 
@@ -75,6 +77,8 @@ bool SlowTask::run_if_released() noexcept {
     for (std::size_t i = 0; i < given_.count; ++i)
         ProgramHost::write(given_.writes[i].type, given_.writes[i].address, given_.writes[i].value);
     given_.count = 0;
+    for (const auto& block : warm_) block.type->warm_start(block.address, context.now);
+    warm_.clear();
     try {
         const ProgramCode code{task_.config.program.c_str(), task_.config.name.c_str()};
         task_.function(program_, context);
@@ -84,7 +88,8 @@ bool SlowTask::run_if_released() noexcept {
     }
     alarms_ = context.alarms;
     undeclared_ = context.undeclared;
-    variables_.read();
+    left_.variables.read();
+    left_.kept.read();
     run_time_ = Stopwatch{watch}.lap();
     state_.store(State::done, std::memory_order_release);
     return true;
@@ -98,6 +103,7 @@ void SlowTask::forget() noexcept {
 
 void SlowTask::restart() noexcept {
     forget();
+    left_.kept_fresh = false;
     runs_ = 0;
 }
 

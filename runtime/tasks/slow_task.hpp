@@ -11,6 +11,7 @@
 #include "core/cycle_context.hpp"
 #include "runtime/tasks/fault_text.hpp"
 #include "runtime/tasks/latched_requests.hpp"
+#include "runtime/tasks/memory_copy.hpp"
 #include "runtime/tasks/program_host.hpp"
 #include "runtime/tasks/variable_copy.hpp"
 
@@ -26,10 +27,18 @@ public:
         double value = 0;
     };
 
-    /// `writes`: how many operator values are the task's.
+    /// A block whose bytes were kept, before the first scan of its task.
+    struct WarmBlock {
+        const fb::BlockType* type = nullptr;
+        void* address = nullptr;
+    };
+
+    /// `writes`: how many operator values are the task's; `kept`: what of its memory is to be kept over a time without power.
     SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
              std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables,
-             std::size_t writes = 0);
+             std::size_t writes = 0, std::vector<MemoryCopy::Source> kept = {});
+    /// Before its first run, which begins with them. Not real-time.
+    void add_warm_block(const WarmBlock& block) { warm_.push_back(block); }
 
     // --- cycle thread ---------------------------------------------------------------------------------------------------------
     [[nodiscard]] bool due(std::uint64_t cycle) const noexcept { return cycle % divisor_ == 0; }
@@ -55,11 +64,15 @@ public:
     void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
     /// Values of the program's variables as the last applied run left them; for programs without a base task.
-    [[nodiscard]] std::span<const double> variables() const noexcept { return variables_.applied(); }
+    [[nodiscard]] std::span<const double> variables() const noexcept { return left_.variables.applied(); }
+    /// What is kept of its memory, one after the other, as the last applied run left it. Nothing was applied since the program's start: empty.
+    [[nodiscard]] std::span<const std::byte> kept() const noexcept {
+        return left_.kept_fresh ? left_.kept.applied() : std::span<const std::byte>{};
+    }
     /// They were written to while the program rests. Only while finished().
     void show_variables() noexcept {
-        variables_.read();
-        variables_.apply();
+        left_.variables.read();
+        left_.variables.apply();
     }
     /// How many runs have been applied.
     [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
@@ -83,7 +96,12 @@ private:
     ProgramHost::Task task_;
     Program* program_;
     std::uint64_t divisor_;
-    VariableCopy variables_;
+    struct {
+        VariableCopy variables;
+        MemoryCopy kept;
+        bool kept_fresh = false;  // applied since the program's start
+    } left_;                      // of its memory, by a run
+    std::vector<WarmBlock> warm_;
     std::atomic<State> state_{State::idle};
     LatchedRequests requests_;
     ObjectAccess& objects_;

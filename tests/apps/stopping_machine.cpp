@@ -243,14 +243,14 @@ TEST_F(Stopping, PositionsOnADiskThatTakesNothingHoldUpNeitherTheAxesNorTheBusAn
     const auto kept = folder / "kept";
     std::filesystem::create_directories(kept);
     // The first writing, at the start, goes well; the next one never comes back from the kernel.
-    const FullPipe disk{(kept / "positions.1.new").string()};
+    const FullPipe disk{(kept / "retain.1.new").string()};
     Child run({taktwerk, "run", absolute(), "--retain", kept.string()});
     ASSERT_TRUE(runs()) << run.text();
-    ASSERT_TRUE(until([&] { return std::filesystem::exists(kept / "positions.0"); })) << run.text();
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(kept / "retain.0"); })) << run.text();
     ASSERT_TRUE(moves()) << refused.text();
     EXPECT_TRUE(ask({{"cmd", "stop"}})) << refused.text();
     EXPECT_TRUE(until([&] { return velocity() == 0; }));
-    EXPECT_FALSE(std::filesystem::exists(kept / "positions.1")) << "the disk was not to take it";
+    EXPECT_FALSE(std::filesystem::exists(kept / "retain.1")) << "the disk was not to take it";
     EXPECT_TRUE(run.says("The positions of the axes cannot be written", 60s)) << "a person is told: " << run.text();
     run.signal(SIGTERM);
     EXPECT_TRUE(run.says("-> Disabled", 30s)) << "the axis lost its power in order: " << run.text();

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "config/drive_file/drive_loader.hpp"
 
@@ -371,9 +372,38 @@ TEST(MachineLoader, EachKindOfHomingHasItsValues) {
 TEST(MachineLoader, RetainIsRelativeToTheFileAndNotForSimulatedDrives) {
     auto options = without_programs();
     const auto path = source + "/tests/config/good/axes.yaml";
-    EXPECT_EQ(must_load(path, options).machine.retain, source + "/tests/config/good/kept");
+    EXPECT_EQ(must_load(path, options).machine.retain.directory, source + "/tests/config/good/kept");
     options.simulate = true;
-    EXPECT_EQ(must_load(path, options).machine.retain, "");
+    EXPECT_EQ(must_load(path, options).machine.retain.directory, "");
+}
+
+// A directory alone, or with more: docs/retain.md.
+TEST(MachineLoader, RetainIsADirectoryOrASection) {
+    const auto path = source + "/tests/config/good/axes.yaml";
+    std::ifstream in(path);
+    const std::string whole{std::istreambuf_iterator<char>(in), {}};
+    const auto with = [&](const std::string& retain) {
+        auto text = whole;
+        const auto at = text.find("retain: state/../kept");
+        EXPECT_NE(at, std::string::npos);
+        return load_machine_text(path, text.replace(at, std::string("retain: state/../kept").size(), "retain: " + retain),
+                                 without_programs());
+    };
+    const auto loaded = with("{ directory: /var/lib/m, every: 200 ms }");
+    ASSERT_TRUE(std::holds_alternative<LoadedMachine>(loaded));
+    const auto& kept = std::get<LoadedMachine>(loaded).machine.retain;
+    EXPECT_EQ(kept.directory, "/var/lib/m");
+    EXPECT_EQ(kept.every, 200ms);
+    EXPECT_EQ(kept.power_fail, "");
+    const auto plain = with("/var/lib/m");
+    ASSERT_TRUE(std::holds_alternative<LoadedMachine>(plain));
+    EXPECT_EQ(std::get<LoadedMachine>(plain).machine.retain.every, 1s);
+    const auto wrong = with("{ every: 200 ms }");
+    ASSERT_TRUE(std::holds_alternative<std::vector<Error>>(wrong));
+    EXPECT_NE(std::get<std::vector<Error>>(wrong).front().what.find("directory"), std::string::npos);
+    const auto unknown = with("{ directory: d, power_fail: supply }");
+    ASSERT_TRUE(std::holds_alternative<std::vector<Error>>(unknown));
+    EXPECT_EQ(std::get<std::vector<Error>>(unknown).front().code, "retain.power_fail");
 }
 
 TEST(MachineLoader, TasksRunAtWholeCycles) {

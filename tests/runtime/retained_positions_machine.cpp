@@ -38,7 +38,7 @@ struct RetainedPositions : ::testing::Test {
         }
         config.axes[0].simulation.start = x_stands;
         config.axes[0].axis.memory.absolute = true;
-        config.retain = directory.string();
+        config.retain.directory = directory.string();
         return config;
     }
     void start(MachineConfig config) {
@@ -60,7 +60,7 @@ struct RetainedPositions : ::testing::Test {
     }
     std::string slots() const {
         std::string text;
-        for (const char* name : {"positions.0", "positions.1"}) {
+        for (const char* name : {"retain.0", "retain.1"}) {
             std::ifstream in(directory / name);
             text += std::string{std::istreambuf_iterator<char>(in), {}};
         }
@@ -184,7 +184,7 @@ TEST_F(RetainedPositions, AReferenceThatCannotBeReplacedOnTheDiskStopsTheMachine
     start(config());
     work();
     machine->run(2500ms);
-    for (const char* name : {"positions.0", "positions.1"}) fs::permissions(directory / name, fs::perms::owner_read);
+    for (const char* name : {"retain.0", "retain.1"}) fs::permissions(directory / name, fs::perms::owner_read);
     fs::permissions(directory, fs::perms::owner_read | fs::perms::owner_exec);
 
     ASSERT_EQ(machine->command(home, 0).answer, Answer::accepted);
@@ -211,10 +211,10 @@ TEST_F(RetainedPositions, WithoutRoomForANewSlotTheOldReferenceIsGoneAfterAHomin
     start(config());
     work();
     machine->run(2500ms);
-    for (const char* beside : {"positions.0.new", "positions.1.new"}) fs::create_directory(directory / beside);
+    for (const char* beside : {"retain.0.new", "retain.1.new"}) fs::create_directory(directory / beside);
     machine->home(0);  // other coordinates: it stands 120 mm further
     machine->run(100ms);
-    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_not_kept))) << machine->alarms();
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::retain_not_written))) << machine->alarms();
     EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::positions_outdated)));
     machine.reset();
     start(config(170));
@@ -244,10 +244,10 @@ TEST_F(RetainedPositions, WhileAnAxisHomesTheDiskNamesNoReference) {
 TEST_F(RetainedPositions, ADiskThatTakesNothingIsSaidBeforeAnythingMoves) {
     auto c = config();
     std::ofstream(directory / "file") << "";
-    c.retain = (directory / "file" / "state").string();
+    c.retain.directory = (directory / "file" / "state").string();
     start(std::move(c));
     machine->run(5ms);
-    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_not_kept))) << machine->alarms();
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::retain_not_written))) << machine->alarms();
 }
 
 TEST_F(RetainedPositions, ASecondMachineInTheSameDirectoryDoesNotStart) {
@@ -257,7 +257,7 @@ TEST_F(RetainedPositions, ASecondMachineInTheSameDirectoryDoesNotStart) {
     World world{second, clock.now()};
     auto built = Machine::build(second, world.transport(), world.serial().lines());
     ASSERT_EQ(built.index(), 1u);
-    EXPECT_EQ(std::get<1>(built).front().code, "positions.in_use");
+    EXPECT_EQ(std::get<1>(built).front().code, "retain.in_use");
 }
 
 TEST_F(RetainedPositions, ChangedGearingIsSaid) {
@@ -277,7 +277,7 @@ TEST_F(RetainedPositions, OneDamagedSlotCostsNothingBothAreAnAlarmUntilHomed) {
     machine->run(2500ms);
     end();
     const auto newest = [&](const char* name) { return fs::last_write_time(directory / name); };
-    const char* newer = newest("positions.0") > newest("positions.1") ? "positions.0" : "positions.1";
+    const char* newer = newest("retain.0") > newest("retain.1") ? "retain.0" : "retain.1";
     std::ofstream(directory / newer) << "torn";
     start(config(170));
     EXPECT_TRUE(machine->axis(0).homed);
@@ -285,7 +285,7 @@ TEST_F(RetainedPositions, OneDamagedSlotCostsNothingBothAreAnAlarmUntilHomed) {
     EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::positions_lost)));
     end();
 
-    for (const char* name : {"positions.0", "positions.1"}) std::ofstream(directory / name) << "torn";
+    for (const char* name : {"retain.0", "retain.1"}) std::ofstream(directory / name) << "torn";
     start(config(170));
     EXPECT_FALSE(machine->axis(0).homed);
     EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_lost))) << machine->alarms();
@@ -298,14 +298,14 @@ TEST_F(RetainedPositions, OneDamagedSlotCostsNothingBothAreAnAlarmUntilHomed) {
 TEST_F(RetainedPositions, WhatCannotBeWrittenIsAWarningAndTriedAgain) {
     auto c = config();
     std::ofstream(directory / "file") << "";
-    c.retain = (directory / "file" / "state").string();
+    c.retain.directory = (directory / "file" / "state").string();
     start(std::move(c));
     work();
-    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_not_kept))) << machine->alarms();
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::retain_not_written))) << machine->alarms();
     fs::remove(directory / "file");
     machine->run(1500ms);
-    EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::positions_not_kept)));
-    EXPECT_TRUE(fs::exists(directory / "file" / "state" / "positions.0"));
+    EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::retain_not_written)));
+    EXPECT_TRUE(fs::exists(directory / "file" / "state" / "retain.0"));
 }
 
 // Cycle by cycle the same set-points, whether positions are kept or not.
@@ -313,7 +313,7 @@ TEST_F(RetainedPositions, KeepingDoesNotInfluenceTheMotion) {
     std::vector<double> with, without;
     for (auto* positions : {&with, &without}) {
         auto c = config();
-        if (positions == &without) c.retain.clear();
+        if (positions == &without) c.retain.directory.clear();
         start(std::move(c));
         machine->on_cycle = [&] { positions->push_back(machine->axis(0).set_position); };
         work();

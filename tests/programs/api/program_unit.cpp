@@ -3,10 +3,13 @@
 #include "programs/api/program.hpp"
 
 #include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "fb_library/iec/counters.hpp"
 
 namespace taktwerk {
 namespace {
@@ -92,7 +95,21 @@ public:
     void add_task(std::string_view, TaskFunction function) override { functions.push_back(function); }
     void add_block(std::string_view, const void*, std::size_t) override {}
     void add_operator_value(std::string_view, VariableType, void*, const OperatorValueSpec&, OperatorValueKind) override {}
+    void add_retained(RetainKind kind, std::string_view name, const fb::PinType& type, void* address, std::string_view task) override {
+        kept.push_back({kind, std::string(name), std::string(type.name), address, std::string(task)});
+    }
+    void add_retained_block(RetainKind kind, std::string_view name, const fb::BlockType& type, void* address,
+                            std::string_view task) override {
+        kept.push_back({kind, std::string(name), std::string(type.name), address, std::string(task)});
+    }
     std::vector<TaskFunction> functions;
+    struct Kept {
+        RetainKind kind;
+        std::string name, type;
+        void* address;
+        std::string task;
+    };
+    std::vector<Kept> kept;
 };
 
 /// With a second base before Program, the object and its Program part have different addresses.
@@ -122,6 +139,34 @@ TEST(Task, CallsTheMethodOfTheProgramItBelongsTo) {
 
     EXPECT_EQ(program.fast, 1);
     EXPECT_EQ(program.slow, 1);
+}
+
+// Every member by its own name and type: an array element by element, a block as itself.
+TEST(Retain, NamesEachMemberWithItsType) {
+    Recorder recorder;
+    std::int16_t number = 0;
+    bool flag = false;
+    Duration time{};
+    std::array<float, 2> recipe{};
+    fb::CTU count;
+    Declaration& d = recorder;
+    d.retain("number", number);
+    d.persistent("flag", flag, "slow");
+    d.retain("time", time);
+    d.retain("recipe", recipe);
+    d.persistent("count", count);
+    ASSERT_EQ(recorder.kept.size(), 6u);
+    const auto is = [&](std::size_t i, RetainKind kind, std::string_view name, std::string_view type, const void* address) {
+        const auto& kept = recorder.kept[i];
+        return kept.kind == kind && kept.name == name && kept.type == type && kept.address == address;
+    };
+    EXPECT_TRUE(is(0, RetainKind::retain, "number", "INT", &number));
+    EXPECT_TRUE(is(1, RetainKind::persistent, "flag", "BOOL", &flag));
+    EXPECT_EQ(recorder.kept[1].task, "slow");
+    EXPECT_TRUE(is(2, RetainKind::retain, "time", "TIME", &time));
+    EXPECT_TRUE(is(3, RetainKind::retain, "recipe[0]", "REAL", &recipe[0]));
+    EXPECT_TRUE(is(4, RetainKind::retain, "recipe[1]", "REAL", &recipe[1]));
+    EXPECT_TRUE(is(5, RetainKind::persistent, "count", "CTU", &count));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "runtime/positions/position_keeper.hpp"
+#include "runtime/retain/position_watch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration standing_time = 2s;  // machines that stop and go do not write each time
-constexpr Duration retry_after = 1s;
-constexpr Duration slow_disk = 3s;  // a disk that was asleep takes about as long
 
 /// Its reference may become another at any moment: what stands on the disk must not be believed from now on.
 bool homes(const axes::AxisView& view) noexcept {
@@ -20,15 +18,12 @@ bool homes(const axes::AxisView& view) noexcept {
 
 }  // namespace
 
-PositionKeeper::PositionKeeper(const std::filesystem::path& directory, std::span<const AxisBinding> bindings, std::vector<Error>& errors)
-    : store_(directory), watched_(bindings.size()), latest_(std::vector<axes::RetainedPosition>(bindings.size())) {
-    if (auto in_use = store_.lock()) errors.push_back(std::move(*in_use));
-    const auto loaded = store_.load();
-    lost_ = loaded.lost;
+PositionWatch::PositionWatch(std::span<const AxisBinding> bindings, std::span<const RetainedAxis> kept)
+    : watched_(bindings.size()), latest_(std::vector<axes::RetainedPosition>(bindings.size())) {
     for (std::size_t i = 0; i < bindings.size(); ++i) {
         const auto& axis = bindings[i].axis;
         RetainedAxis mine{axis.name, {}, axis.gearing};
-        for (const auto& found : loaded.axes)
+        for (const auto& found : kept)
             if (found.name == axis.name) mine = found;
         const double window = axis.memory.moved_while_off * std::abs(axis.gearing.counts_per_unit());
         watched_[i].written = mine.position;
@@ -38,7 +33,7 @@ PositionKeeper::PositionKeeper(const std::filesystem::path& directory, std::span
     }
 }
 
-void PositionKeeper::restore(std::span<axes::Axis> axes) {
+void PositionWatch::restore(std::span<axes::Axis> axes) {
     for (std::size_t i = 0; i < axes.size(); ++i) {
         if (axes[i].config().simulated) continue;  // its drive forgets; what is kept is the real one's
         axes[i].restore(kept_[i].position, kept_[i].gearing);
@@ -46,7 +41,7 @@ void PositionKeeper::restore(std::span<axes::Axis> axes) {
     }
 }
 
-bool PositionKeeper::differs(const Watched& axis, const axes::RetainedPosition& now) noexcept {
+bool PositionWatch::differs(const Watched& axis, const axes::RetainedPosition& now) noexcept {
     const auto& before = axis.written;
     if (now.homed != before.homed) return true;
     if (!now.homed) return false;
@@ -55,13 +50,14 @@ bool PositionKeeper::differs(const Watched& axis, const axes::RetainedPosition& 
     return way > (now.at_rest ? axis.at_rest_step : axis.moving_step);
 }
 
-void PositionKeeper::watch(std::span<const axes::Axis> axes, Instant now, bool ending) noexcept {
-    bool changed = false, all_known = true;
+void PositionWatch::look(std::span<const axes::Axis> axes, Instant now, bool ending) noexcept {
+    bool changed = false;
+    all_known_ = true;
     for (std::size_t i = 0; i < axes.size(); ++i) {
         if (axes[i].config().simulated) continue;
         auto& watched = watched_[i];
         auto position = axes[i].retained();
-        all_known = all_known && (position.homed || !axes[i].config().memory.absolute);
+        all_known_ = all_known_ && (position.homed || !axes[i].config().memory.absolute);
         if (homes(axes[i].view())) position = {};
         if (!position.at_rest) watched.moved = now;
         if (!ending && now - watched.moved < standing_time) position.at_rest = false;
@@ -69,34 +65,24 @@ void PositionKeeper::watch(std::span<const axes::Axis> axes, Instant now, bool e
         watched.written = position;
         changed = true;
     }
-    lost_ = lost_ && !all_known;
     if (!changed) return;
     auto& back = latest_.back();
     for (std::size_t i = 0; i < watched_.size(); ++i) back[i] = watched_[i].written;
     latest_.publish();
 }
 
-bool PositionKeeper::hangs(Instant now) const noexcept {
-    const auto since = writing_since_.load(std::memory_order_relaxed);
-    return since >= 0 && now.time_since_epoch() - Duration{since} > slow_disk;
-}
-
-void PositionKeeper::step(Instant now) {
+bool PositionWatch::take() {
     const auto reading = latest_.read();
     if (reading.is_new)
         for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].position = (*reading.value)[i];
-    const bool again = failing() && now >= retry_at_;
-    if (!reading.is_new && !again && proved_) return;
-    proved_ = true;
-    std::vector<RetainedAxis> homed;
+    return reading.is_new;
+}
+
+std::vector<RetainedAxis> PositionWatch::homed() const {
+    std::vector<RetainedAxis> out;
     for (const auto& axis : kept_)
-        if (axis.position.homed) homed.push_back(axis);
-    writing_since_.store(now.time_since_epoch().count(), std::memory_order_relaxed);
-    const auto saved = store_.save(homed);
-    writing_since_.store(-1, std::memory_order_relaxed);
-    failing_.store(!saved.ok(), std::memory_order_relaxed);
-    outdated_.store(!saved.ok() && saved.error().code == "positions.outdated", std::memory_order_relaxed);
-    retry_at_ = now + retry_after;
+        if (axis.position.homed) out.push_back(axis);
+    return out;
 }
 
 }  // namespace taktwerk::runtime

@@ -1,0 +1,155 @@
+#include "apps/machine/retain_json.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/retain/kept_text.hpp"
+#include "runtime/retain/value_type.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using namespace runtime;
+
+constexpr std::string_view kind_word(RetainKind kind) { return kind == RetainKind::retain ? "retain" : "persistent"; }
+
+std::string hex(const std::vector<std::byte>& bytes) {
+    std::string out;
+    for (const auto byte : bytes) out += fmt::format("{:02x}", std::to_integer<unsigned>(byte));
+    return out;
+}
+
+std::string text_at(const Json& one, const char* key) {
+    return one.contains(key) && one[key].is_string() ? one[key].get<std::string>() : std::string{};
+}
+
+/// Says where a file is wrong.
+class Reading {
+public:
+    explicit Reading(const std::string& file) : file_(file) {}
+
+    [[nodiscard]] Error wrong(const std::string& where, const std::string& what) const {
+        return {"retain.import", file_, fmt::format("{}: {}", where, what), "compare with what `taktwerk retain export` writes"};
+    }
+    template <class T, class Read>
+    std::optional<Error> list(const Json& all, const char* key, std::vector<T>& out, Read read) const {
+        if (!all.contains(key)) return std::nullopt;
+        if (!all[key].is_array()) return wrong(key, "it is no list");
+        for (std::size_t i = 0; i < all[key].size(); ++i) {
+            const Json& one = all[key][i];
+            const auto where = fmt::format("{}[{}]", key, i);
+            if (!one.is_object()) return wrong(where, "it is no object");
+            T item;
+            item.name = text_at(one, "name");
+            if (item.name.empty()) return wrong(where, "it has no \"name\"");
+            if (auto why = read(one, item); !why.empty()) return wrong(fmt::format("{} '{}'", where, item.name), why);
+            out.push_back(std::move(item));
+        }
+        return std::nullopt;
+    }
+
+private:
+    const std::string& file_;
+};
+
+std::string read_kind(const Json& one, RetainKind& kind) {
+    const auto text = text_at(one, "kind");
+    if (text != "retain" && text != "persistent") return R"("kind" is neither "retain" nor "persistent")";
+    kind = text == "retain" ? RetainKind::retain : RetainKind::persistent;
+    return {};
+}
+
+std::string read_value(const Json& one, KeptValue& value) {
+    if (auto why = read_kind(one, value.kind); !why.empty()) return why;
+    const auto type = find_type(text_at(one, "type"));
+    if (!type) return fmt::format("\"type\" is no type that is kept: '{}'", text_at(one, "type"));
+    value.type = *type;
+    const auto bits = bits_of(*type, text_at(one, "value"));
+    if (!bits) return fmt::format("\"value\" is no {} as text: '{}'", word(*type), text_at(one, "value"));
+    value.bits = *bits;
+    return {};
+}
+
+std::string read_block(const Json& one, KeptBlock& block) {
+    if (auto why = read_kind(one, block.kind); !why.empty()) return why;
+    block.type = text_at(one, "type");
+    const auto layout = text_at(one, "layout"), bytes = text_at(one, "bytes");
+    if (std::from_chars(layout.data(), layout.data() + layout.size(), block.layout, 16).ptr != layout.data() + layout.size() ||
+        layout.empty())
+        return "\"layout\" is no hexadecimal number";
+    if (bytes.size() % 2 != 0 || bytes.empty() || bytes.size() > 2 * largest_kept_block) return "\"bytes\" are no bytes";
+    for (std::size_t i = 0; i < bytes.size(); i += 2) {
+        std::uint8_t byte = 0;
+        if (std::from_chars(bytes.data() + i, bytes.data() + i + 2, byte, 16).ptr != bytes.data() + i + 2)
+            return "\"bytes\" are no hexadecimal bytes";
+        block.bytes.push_back(std::byte{byte});
+    }
+    return {};
+}
+
+std::string read_parameter(const Json& one, KeptParameter& parameter) {
+    for (auto [key, to] : {std::pair{"value", &parameter.value}, std::pair{"configured", &parameter.configured}}) {
+        if (!one.contains(key) || !one[key].is_number()) return fmt::format("\"{}\" is no number", key);
+        *to = one[key].get<double>();
+        if (!std::isfinite(*to)) return fmt::format("\"{}\" is too large", key);
+    }
+    return {};
+}
+
+}  // namespace
+
+Json json_of(const Kept& kept) {
+    Json out{{"taktwerk_retain", 1}, {"number", kept.number}};
+    auto& values = out["values"] = Json::array();
+    for (const auto& value : kept.values) {  // text, so that no reader rounds what is no double
+        values.push_back({{"name", value.name},
+                          {"kind", kind_word(value.kind)},
+                          {"type", word(value.type)},
+                          {"value", text_of(value.type, value.bits)}});
+        if (value.unclaimed > 0) values.back()["unclaimed"] = value.unclaimed;
+    }
+    auto& parameters = out["parameters"] = Json::array();
+    for (const auto& parameter : kept.parameters) {
+        parameters.push_back({{"name", parameter.name}, {"value", parameter.value}, {"configured", parameter.configured}});
+        if (parameter.unclaimed > 0) parameters.back()["unclaimed"] = parameter.unclaimed;
+    }
+    auto& blocks = out["blocks"] = Json::array();
+    for (const auto& block : kept.blocks) {
+        blocks.push_back({{"name", block.name},
+                          {"kind", kind_word(block.kind)},
+                          {"type", block.type},
+                          {"layout", fmt::format("{:016x}", block.layout)},
+                          {"bytes", hex(block.bytes)}});
+        if (block.unclaimed > 0) blocks.back()["unclaimed"] = block.unclaimed;
+    }
+    auto& axes = out["axes"] = Json::array();  // for people alone: a position belongs to one encoder, and is not taken back from a file
+    for (const auto& axis : kept.axes)
+        axes.push_back({{"name", axis.name},
+                        {"homed", axis.position.homed},
+                        {"shift", axis.position.shift},
+                        {"counts", axis.position.counts},
+                        {"at_rest", axis.position.at_rest}});
+    return out;
+}
+
+Result<Kept> kept_of_json(const std::string& file, const std::string& text) {
+    const Reading reading(file);
+    const auto all = Json::parse(text, nullptr, false);
+    if (all.is_discarded()) return reading.wrong("the file", "it is not JSON");
+    if (!all.is_object() || !all.contains("taktwerk_retain"))
+        return reading.wrong("the file", "it has no \"taktwerk_retain\": it is none of these exports");
+    if (all["taktwerk_retain"] != 1) return reading.wrong("taktwerk_retain", "this version reads 1");
+    Kept out;
+    if (auto error = reading.list(all, "values", out.values, read_value)) return *error;
+    if (auto error = reading.list(all, "blocks", out.blocks, read_block)) return *error;
+    if (auto error = reading.list(all, "parameters", out.parameters, read_parameter)) return *error;
+    out.number = 1;
+    if (!kept_of(text_of(out))) return reading.wrong("the file", "a name stands in it twice, or is no name");
+    return out;
+}
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,34 @@
+#pragma once
+// The file format of what is kept. Text, one line each:
+//
+//     taktwerk retain 1                    format and version
+//     number 17                            rises with each writing
+//     axis x homed 1 shift 12.5 counts -4711 at_rest 1 gearing 10000 1 1 10 0
+//     value cell.pieces retain LINT 4711 0
+//     block cell.batch persistent CTU 9f3a0c11d2e45b67 0 0100...
+//     parameter cell.speed 180 200 0       its value, what was configured then
+//     crc 1a2b3c4d                         CRC-32 (IEEE 802.3) of all bytes before this line
+//
+// shift [u] is the coordinate of count 0, counts [counts] where the axis was, unwrapped; gearing: counts_per_revolution, motor and load
+// revolutions, feed [u], inverted. The 0 (of a block the one before its bytes): starts without anybody who claimed it. In names all but
+// letters, digits, `_ - . [ ]` and bytes above 127 stand as %20. Numbers are written so that they read back as the very same; such that
+// nobody can have (an axis beyond what its counts resolve, 300 in a USINT) are damage, whatever the check sum says. A file of an older
+// runtime (`taktwerk positions 1`, axes alone) is read as well. Pure functions; they never throw but for want of memory.
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "runtime/retain/kept.hpp"
+
+namespace taktwerk::runtime {
+
+/// What a machine can have at most; a file with more of one kind is damage.
+inline constexpr std::size_t most_kept_items = 16384;
+inline constexpr std::size_t largest_kept_block = 8192;  ///< bytes
+
+[[nodiscard]] std::string text_of(const Kept& kept);
+/// Nothing where the file is torn, altered, or of another kind.
+[[nodiscard]] std::optional<Kept> kept_of(std::string_view text);
+
+}  // namespace taktwerk::runtime
