@@ -146,6 +146,32 @@ function bundle(): void {
     say(`the page's files, gzip: ${(files.reduce((sum, file) => sum + file.bytes, 0) / 1000).toFixed(1)} kB (${files.map((file) => `${file.name} ${(file.bytes / 1000).toFixed(1)}`).join(', ')})`);
 }
 
+/** A minute of 32 signals of which each cycle counts, in a browser: what the page itself marks as missing, looked at each second, and what it exports at the end. */
+async function scope(machine: Machine): Promise<void> {
+    const listed = ((await machine.told({ cmd: 'scope_signals' }))['scope'] as Json)['signals'] as { name: string; kind: string; group: string }[];
+    const names = listed.filter((s) => s.kind === 'real' && s.group === 'axis').map((s) => s.name).slice(0, 32);
+    const server = await serve();
+    const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', headless: true, args: browser_arguments });
+    const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+    await page.addInitScript((channels) => {
+        localStorage.setItem('scope_last', JSON.stringify({ taktwerk_scope: 1, span_s: 15, channels: channels.map((name, colour) => ({ name, colour, offset: 0 })) }));
+    }, names);
+    await page.goto(`http://127.0.0.1:${server.port}/#scope`);
+    await page.locator('.scope-values tbody tr').nth(31).waitFor();
+    let looks = 0, missing = 0;
+    for (const end = Date.now() + 60_000; Date.now() < end; await pause(1000)) {
+        ++looks;
+        missing += await page.locator('tr[data-missing]').count();
+    }
+    await page.locator('[data-do="files"]').click();
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('[data-do="save_csv"]').click()]);
+    const [head = '', ...rows] = readFileSync(await download.path(), 'utf8').trimEnd().split('\n');
+    const lacking = rows.filter((row) => /(^|,)(nan)?(,|$)/.test(row)).length;
+    say(`scope of ${names.length} signals at 1 kHz, 60 s: ${missing} signals with a gap in ${looks} looks; exported ${rows.length} cycles of ${head.split(',').length - 1} signals, ${lacking} with a hole`);
+    await browser.close();
+    await ended(server.process);
+}
+
 async function memory(): Promise<void> {
     const server = await serve(raised_rate);
     const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', headless: true, args: browser_arguments });
@@ -190,6 +216,7 @@ try {
     bundle();
     await cycles(machine);
     await first_values();
+    await scope(machine);
     await memory();
     machine.close();
 } catch (failure) {
