@@ -20,13 +20,14 @@ class Wire {
     }
 }
 let now = 1000;
-Object.assign(globalThis, { WebSocket: Wire, window: { setTimeout: () => 0 } });
+Object.assign(globalThis, { WebSocket: Wire, window: { setTimeout: () => 0 }, setTimeout: () => 0 });
 performance.now = () => now;
 
 function opened(): [Link, Wire] {
     const link = new Link('ws://here/ws');
     link.open();
     Wire.newest.onopen();
+    Wire.newest.bufferedAmount = 0;  // what it says at once has left
     return [link, Wire.newest];
 }
 

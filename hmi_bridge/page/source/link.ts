@@ -121,6 +121,7 @@ export class Link {
 
     private say_time(socket: WebSocket): void {
         if (socket.readyState !== WebSocket.OPEN) return;
+        if (socket.bufferedAmount === 0) this.empty_at_ = performance.now();
         if (!this.stalled) socket.send(JSON.stringify({ type: 'clock', sent_ms: performance.now() }));
         setTimeout(() => this.say_time(socket), say_time_each);
     }
