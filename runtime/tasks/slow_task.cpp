@@ -23,7 +23,7 @@ SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<
       outputs_at_release_(outputs),
       input_values_(inputs),
       parameters_(parameters),
-      given_{std::vector<Write>(writes)} {
+      given_{std::vector<Write>(writes), 0, {}} {
     requests_.bind(views_);
 }
 
@@ -77,8 +77,8 @@ bool SlowTask::run_if_released() noexcept {
     for (std::size_t i = 0; i < given_.count; ++i)
         ProgramHost::write(given_.writes[i].type, given_.writes[i].address, given_.writes[i].value);
     given_.count = 0;
-    for (const auto& block : warm_) block.type->warm_start(block.address, context.now);
-    warm_.clear();
+    for (const auto& block : given_.warm) block.type->warm_start(block.address, context.now);
+    given_.warm.clear();
     try {
         const ProgramCode code{task_.config.program.c_str(), task_.config.name.c_str()};
         task_.function(program_, context);

@@ -38,7 +38,7 @@ public:
              std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables,
              std::size_t writes = 0, std::vector<MemoryCopy::Source> kept = {});
     /// Before its first run, which begins with them. Not real-time.
-    void add_warm_block(const WarmBlock& block) { warm_.push_back(block); }
+    void add_warm_block(const WarmBlock& block) { given_.warm.push_back(block); }
 
     // --- cycle thread ---------------------------------------------------------------------------------------------------------
     [[nodiscard]] bool due(std::uint64_t cycle) const noexcept { return cycle % divisor_ == 0; }
@@ -101,7 +101,6 @@ private:
         MemoryCopy kept;
         bool kept_fresh = false;  // applied since the program's start
     } left_;                      // of its memory, by a run
-    std::vector<WarmBlock> warm_;
     std::atomic<State> state_{State::idle};
     LatchedRequests requests_;
     ObjectAccess& objects_;
@@ -115,9 +114,10 @@ private:
     } image_;  // of the outputs
     std::vector<double> parameters_;
     struct {
-        std::vector<Write> writes;
-        std::size_t count = 0;
-    } given_;  // by people, for the next run
+        std::vector<Write> writes;  // by people ...
+        std::size_t count = 0;      // ... so many
+        std::vector<WarmBlock> warm;
+    } given_;  // for the next run
     CycleContext context_;
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
     bool threw_ = false;

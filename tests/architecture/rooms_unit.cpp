@@ -10,7 +10,7 @@ namespace {
 
 /// Records: values that belong side by side, with at most the questions that they answer by themselves. And what is as large for a reason.
 const std::vector<Leave> large_classes{
-    {"axes/axis/axis_view.hpp", "AxisView", 70, "record: everything that one cycle shows of an axis, in one copy"},
+    {"axes/axis/axis_view.hpp", "AxisView", 71, "record: everything that one cycle shows of an axis, in one copy"},
     {"axes/port/drive_profile.hpp", "DriveProfile", 52, "record: what a drive type is; its rooms are structs in it"},
     {"axes/port/drive_feedback.hpp", "DriveFeedback", 32, "record: what a drive says in one cycle"},
     {"axes/port/drive_capabilities.hpp", "DriveCapabilities", 30, "record: what a drive can"},

@@ -153,6 +153,9 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
                                          R"("cmd":"measure","axis":"x","press":true,"kind":"step")",
                                          R"("cmd":"set_value","variable":"cell.start","value":1,"press":true)"};
     ASSERT_EQ(lines.size(), command_words.size());
+    auto& limits = machine.its_config.limits;  // of an axis that can be measured
+    limits.velocity = 200, limits.acceleration = limits.deceleration = 5000, limits.jerk = 100000;
+    machine.snapshot.axes[0].manual_slow = 20, machine.snapshot.axes[0].manual_fast = 50;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const auto answer = ask("{\"id\":" + std::to_string(i + 1) + "," + lines[i] + "}");
         EXPECT_EQ(answer["ok"], true) << lines[i] << answer;

@@ -21,6 +21,20 @@
 #include "taktwerk_lcm/io_state_v1_t.hpp"
 #include "taktwerk_lcm/machine_state_v1_t.hpp"
 #include "taktwerk_lcm/program_values_v1_t.hpp"
+#include "taktwerk_lcm/whole_alarm_v1_t.hpp"
+#include "taktwerk_lcm/whole_axis_v1_t.hpp"
+#include "taktwerk_lcm/whole_bus_v1_t.hpp"
+#include "taktwerk_lcm/whole_event_v1_t.hpp"
+#include "taktwerk_lcm/whole_force_v1_t.hpp"
+#include "taktwerk_lcm/whole_giver_v1_t.hpp"
+#include "taktwerk_lcm/whole_measure_v1_t.hpp"
+#include "taktwerk_lcm/whole_point_v1_t.hpp"
+#include "taktwerk_lcm/whole_program_v1_t.hpp"
+#include "taktwerk_lcm/whole_slave_v1_t.hpp"
+#include "taktwerk_lcm/whole_state_v1_t.hpp"
+#include "taktwerk_lcm/whole_statistics_v1_t.hpp"
+#include "taktwerk_lcm/whole_task_v1_t.hpp"
+#include "taktwerk_lcm/whole_value_v1_t.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -61,7 +75,7 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
         EXPECT_EQ(*made, static_cast<std::uint64_t>(generated)) << name;
         EXPECT_EQ(ours().find(*made), &type(name));
     };
-    EXPECT_EQ(ours().types().size(), 12u) << "a new type: a line here";
+    EXPECT_EQ(ours().types().size(), 26u) << "a new type: a line here";
     expect("acknowledge_v1_t", acknowledge_v1_t::getHash());
     expect("alarm_list_v1_t", alarm_list_v1_t::getHash());
     expect("alarm_v1_t", alarm_v1_t::getHash());
@@ -74,6 +88,20 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
     expect("io_state_v1_t", io_state_v1_t::getHash());
     expect("machine_state_v1_t", machine_state_v1_t::getHash());
     expect("program_values_v1_t", program_values_v1_t::getHash());
+    expect("whole_alarm_v1_t", whole_alarm_v1_t::getHash());
+    expect("whole_axis_v1_t", whole_axis_v1_t::getHash());
+    expect("whole_bus_v1_t", whole_bus_v1_t::getHash());
+    expect("whole_event_v1_t", whole_event_v1_t::getHash());
+    expect("whole_force_v1_t", whole_force_v1_t::getHash());
+    expect("whole_giver_v1_t", whole_giver_v1_t::getHash());
+    expect("whole_measure_v1_t", whole_measure_v1_t::getHash());
+    expect("whole_point_v1_t", whole_point_v1_t::getHash());
+    expect("whole_program_v1_t", whole_program_v1_t::getHash());
+    expect("whole_slave_v1_t", whole_slave_v1_t::getHash());
+    expect("whole_state_v1_t", whole_state_v1_t::getHash());
+    expect("whole_statistics_v1_t", whole_statistics_v1_t::getHash());
+    expect("whole_task_v1_t", whole_task_v1_t::getHash());
+    expect("whole_value_v1_t", whole_value_v1_t::getHash());
 }
 
 TEST(TypeText, ReadsWhatLcmGenReads) {

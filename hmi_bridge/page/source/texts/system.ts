@@ -30,7 +30,7 @@ export const system = {
     latency: ['Latency, worst', '延迟,最差'],
     states_a_second: ['States a second', '每秒状态数'],
     values_from: ['Values come over', '数据来源'],
-    source_lcm: ['LCM', 'LCM'],
+    source_lcm: ['LCM', 'LCM 组播'],
     source_socket: ['the local socket', '本地套接字'],
     why_not_lcm: ['Why not over LCM', '未使用 LCM 的原因'],
     lost_over_lcm: ['Lost / refused over LCM', 'LCM 丢失/拒收'],
