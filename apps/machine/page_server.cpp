@@ -79,12 +79,14 @@ PageServer::~PageServer() {
 }
 
 void PageServer::step() {
-    if (output_ < 0) return;
-    read();
-    if (output_ >= 0 || pid_ <= 0) return;
-    // It holds the pipe's other end as long as it lives.
+    if (told_) return;
+    if (output_ >= 0) read();
+    if (output_ >= 0) return;
+    // It holds the pipe's other end as long as it lives: how it ended is known a moment after the pipe's end.
     int status = 0;
     if (::waitpid(pid_, &status, WNOHANG) == pid_) pid_ = 0;
+    else if (++looks_after_the_end_ < looks_for_its_end) return;
+    told_ = true;
     const auto how = pid_ > 0              ? std::string("it has closed its output")
                      : WIFSIGNALED(status) ? fmt::format("ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)))
                                            : fmt::format("ended with exit code {}", WEXITSTATUS(status));

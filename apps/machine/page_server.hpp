@@ -32,11 +32,14 @@ private:
     bool ended();
 
     static constexpr std::size_t longest_line = 4096;
+    static constexpr int looks_for_its_end = 500;
 
     pid_t pid_;
     int input_, output_;
     Say say_;
     std::string text_;
+    int looks_after_the_end_ = 0;
+    bool told_ = false;  // that it is gone
 };
 
 }  // namespace taktwerk::apps

@@ -155,7 +155,7 @@ test('the bus is drawn in the order of its cable', { timeout: 180_000 }, async (
 });
 
 test('an emergency stop that was released leaves its words until somebody resets', { timeout: 180_000 }, async () => {
-    await insist('x has power', async () => {
+    await cell.insist('x has power', async () => {
         await cell.machine.ask({ cmd: 'reset' });
         await cell.machine.ask({ cmd: 'enable', axis: 'x' });
     }, async () => (await cell.axis('x')).powered);

@@ -94,7 +94,8 @@ test('a number: what is typed stands in the program, what is out of its range do
         await until(`${wrong} is refused`, async () => (await cell.notice()).includes(wrong.replace('-', '')));
     }
     await cell.insist('the program has the next one', () => type('72.25'), async () => (await variable('pace')) === 72.25);
-    const had = new Set(await recorded(cell.machine, 'pick_and_place.pace', from, await newest(cell.machine)));
+    let had = new Set<number>();
+    await until('it is recorded, too', async () => (had = new Set(await recorded(cell.machine, 'pick_and_place.pace', from, await newest(cell.machine)))).has(72.25));
     assert.deepEqual([...had], [100, 72.5, 72.25]);
     assert.ok(await widget('pick_and_place.speed').locator('button').isDisabled(), 'a parameter is for the engineer');
 });

@@ -96,6 +96,7 @@ function commands(desk: Desk) {
 
 export function system(desk: Desk): Page {
     const machine = new Values(), cycle = new Values(), page = new Values();
+    page.root.classList.add('words');  // a reason may be long
     const recorded = recordings(desk), given = commands(desk), logged = log(desk);
     let asked = 0, latency = NaN, worst = 0, uptime = NaN;
     const ping = new Inquiry(desk, () => {
