@@ -13,7 +13,7 @@ const tastes: Required<Taste>[] = [{ language: 'en', theme: 'light' }, { languag
 const without_scrolling = ['overview', 'axis/x', 'io'];
 
 // Names that a machine file gives, those of alarms, words of standards and units: the same in every language; so are commands, which stand in `these`.
-const allowed = /^(demo|x|y|z|io|[xyz]_drive|sv33-e|se-808x|estop_ok|start_button|gripper_closed|part_present|lamp_run|gripper|buzzer|pick_and_place(\.\w+)*|speed|grip_time|main|step|pieces|mm|s|µs|ns|ms|kB|u|OP|PREOP|SAFEOP|INIT|DC|AL|SYNC0|RX|CSV|EEPROM|MC_\w+|(MIT|Apache|BSD|MPL|L?GPL|BSL|ISC|Zlib|public-domain)(-[\w.-]+)?|uPlot|esbuild|TypeScript|English|v?\d.*|[0-9A-F]+h|P\d\d\.\d\d|socket|lcm|Taktwerk|[a-z]+(_[a-z]+)+)$/;
+const allowed = /^(demo|x|y|z|io|[xyz]_drive|sv33-e|se-808x|estop_ok|start_button|gripper_closed|part_present|lamp_run|gripper|buzzer|pick_and_place(\.\w+)*|speed|grip_time|main|step|pieces|mm|s|µs|ns|ms|kB|u|OP|PREOP|SAFEOP|INIT|DC|AL|SYNC0|RX|CSV|EEPROM|MC_\w+|(MIT|Apache|BSD|MPL|L?GPL|BSL|ISC|Zlib|public-domain)(-[\w.-]+)?|uPlot|esbuild|TypeScript|English|v?\d.*|[0-9A-F]+h|P\d\d\.\d\d|socket|lcm|LCM|Taktwerk|[a-z]+(_[a-z]+)+)$/;
 
 for (const taste of tastes)
     for (const place of places)

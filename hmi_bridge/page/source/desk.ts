@@ -1,7 +1,7 @@
 // What the pages share: the connection, giving a command and telling its answer, buttons that know when they may be pressed.
 import { Answer, Link, Request } from './link';
 import { Ending, JogHold } from './jog';
-import { said } from './sentences/said';
+import { said, write_said } from './sentences/said';
 import { AxisLayout, AxisState, MachineState } from './state';
 import { Key, say, word } from './texts';
 import { element, mark, write } from './view';
@@ -130,6 +130,10 @@ export class Values {
     }
     set(key: Key, text: string): void {
         write(this.cells_.get(key) ?? this.add(key), text);
+    }
+    /** A sentence of the server, which may be in English alone and is marked as such then. */
+    set_said(key: Key, english: string): void {
+        write_said(this.cells_.get(key) ?? this.add(key), english);
     }
 }
 

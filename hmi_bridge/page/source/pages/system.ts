@@ -139,7 +139,7 @@ export function system(desk: Desk): Page {
             page.set('latency', Number.isNaN(latency) ? '–' : `${latency.toFixed(1)} / ${worst.toFixed(1)} ms`);
             page.set('states_a_second', desk.link.rate.toFixed(0));
             page.set('values_from', desk.link.source ? word('source', desk.link.source) : '–');
-            page.set('why_not_lcm', desk.link.why_not_lcm || '–');
+            page.set_said('why_not_lcm', desk.link.why_not_lcm || '–');
             page.set('lost_over_lcm', desk.link.source === 'lcm' ? `${desk.link.lost} / ${desk.link.refused}` : '–');
         },
         leave() {
