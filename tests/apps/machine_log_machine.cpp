@@ -111,7 +111,7 @@ TEST_F(MachineLogOf, ManyOfTheSameAreCounted) {
 }
 
 TEST_F(MachineLogOf, WhatWasTooMuchIsSaid) {
-    for (int i = 0; i < 30; ++i) jam();
+    for (std::size_t i = 0; i < runtime::PassedAlarms::capacity + 14; ++i) jam();
     look();
     EXPECT_THAT(said, HasSubstr("14 alarms came and went too fast to be shown")) << said;
 }

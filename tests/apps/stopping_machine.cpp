@@ -251,11 +251,11 @@ TEST_F(Stopping, PositionsOnADiskThatTakesNothingHoldUpNeitherTheAxesNorTheBusAn
     EXPECT_TRUE(ask({{"cmd", "stop"}})) << refused.text();
     EXPECT_TRUE(until([&] { return velocity() == 0; }));
     EXPECT_FALSE(std::filesystem::exists(kept / "retain.1")) << "the disk was not to take it";
-    EXPECT_TRUE(run.says("The positions of the axes cannot be written", 60s)) << "a person is told: " << run.text();
+    EXPECT_TRUE(run.says("What is kept cannot be written", 60s)) << "a person is told: " << run.text();
     run.signal(SIGTERM);
     EXPECT_TRUE(run.says("-> Disabled", 30s)) << "the axis lost its power in order: " << run.text();
     EXPECT_EQ(run.wait(30s), exit_hung) << run.text();
-    EXPECT_THAT(run.text(), HasSubstr("a disk does not take the positions of the axes"));
+    EXPECT_THAT(run.text(), HasSubstr("a disk does not take what is kept"));
     EXPECT_THAT(run.text(), ::testing::Not(HasSubstr("Mend that program"))) << "no program is to blame";
 }
 
