@@ -77,7 +77,7 @@ test('a viewer looks', { timeout: 180_000 }, async () => {
     await cell.page.evaluate(() => { location.hash = 'axis/x'; });
     const power = cell.page.locator('[data-cmd="enable"], [data-cmd="disable"]').first();
     await power.waitFor();
-    assert.ok(await power.isDisabled());
-    assert.match((await power.getAttribute('data-reason')) ?? '', /viewer/);
-    assert.ok(await cell.page.locator('[data-do="stop"]').isEnabled());
+    await until('it is grey', () => power.isDisabled());
+    await until('it says why', async () => /viewer/.test((await power.getAttribute('data-reason')) ?? ''));
+    await until('a stop is his', () => cell.page.locator('[data-do="stop"]').isEnabled());
 });
