@@ -23,9 +23,12 @@
 
 namespace taktwerk::runtime {
 
-/// What a machine can have at most; a file with more of one kind is damage.
+/// What the programs of a machine may keep: more is a problem of its file, for it could not be read again.
+inline constexpr std::size_t most_kept_values = 8192;                 ///< elements of arrays and pins of blocks count as one each
+inline constexpr std::size_t largest_kept_block = 8192;               ///< bytes
+inline constexpr std::size_t most_kept_bytes = std::size_t{1} << 20;  ///< of all of it in memory
+/// A file with more of one kind is damage: those of the programs, and what is kept aside (KeptValues).
 inline constexpr std::size_t most_kept_items = 16384;
-inline constexpr std::size_t largest_kept_block = 8192;  ///< bytes
 
 [[nodiscard]] std::string text_of(const Kept& kept);
 /// Nothing where the file is torn, altered, or of another kind.

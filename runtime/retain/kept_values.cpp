@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -178,7 +179,8 @@ void KeptValues::keep_unclaimed(const Kept& kept, RetainStart start, std::vector
         }
         // Those that somebody had last stay the longest.
         std::stable_sort(to.begin(), to.end(), [](const auto& a, const auto& b) { return a.unclaimed < b.unclaimed; });
-        if (to.size() > most_unclaimed) to.resize(most_unclaimed);
+        const auto most = std::is_same_v<std::decay_t<decltype(to)>, std::vector<KeptBlock>> ? most_unclaimed_blocks : most_unclaimed;
+        if (to.size() > most) to.resize(most);
     };
     const auto by_kind = [&](const auto& one) { return survives(one.kind, start); };
     take(kept.values, aside_.values, by_kind, [](const KeptValue& one) {

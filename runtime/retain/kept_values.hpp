@@ -23,7 +23,8 @@ struct RetainBound {
 
 class KeptValues {
 public:
-    static constexpr std::size_t most_unclaimed = 4096;  ///< of each kind; those that have been it the longest go first
+    static constexpr std::size_t most_unclaimed = 4096;        ///< values, parameters; those that have been it the longest go first
+    static constexpr std::size_t most_unclaimed_blocks = 256;  ///< likewise
 
     /// `items` and `parameters` stay where they are.
     KeptValues(std::span<const RetainedItem> items, std::span<const MachineLayout::ParameterInfo> parameters)

@@ -40,7 +40,7 @@ void RetainKeeper::restore(std::span<const RetainedItem> items, std::span<const 
                            std::span<double> parameters, std::span<const RetainBound> bounds) {
     values_.emplace(items, infos);
     notes_ = values_->restore(loaded_.kept, config_.start, parameters, bounds);
-    values_lost_ = loaded_.lost && !items.empty();
+    values_lost_ = loaded_.lost && !(items.empty() && infos.empty());
     loaded_ = {};
     parameters_.assign(parameters.begin(), parameters.end());
     to_write_ = {image_of(items), parameters_};

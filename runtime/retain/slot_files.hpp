@@ -16,7 +16,7 @@ namespace taktwerk::runtime {
 class SlotFiles {
 public:
     static constexpr unsigned count = 2;
-    static constexpr std::size_t largest = std::size_t{4} << 20;  ///< bytes of a file; of a longer one the beginning is read
+    static constexpr std::size_t largest = std::size_t{64} << 20;  ///< bytes of a file; of a longer one the beginning is read
 
     explicit SlotFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
     ~SlotFiles();

@@ -139,6 +139,7 @@ public:
         find_owners();
         find_retained_tasks();
         refuse_kept_buttons();
+        refuse_too_much_kept();
         const auto& program = config_.programs[program_];
         for (const auto& set : program.parameters) {
             bool known = false;
@@ -253,6 +254,20 @@ private:
                 host_.retained_[first + i].task = first_task + static_cast<std::size_t>(found - task_names_.begin());
             else unknown("program.unknown_task", "task", retained_tasks_[i], task_names_, "the program's tasks");
         }
+    }
+    /// Once a machine: what is written has to be readable again.
+    void refuse_too_much_kept() {
+        if (retained_names_.empty()) return;
+        std::size_t values = 0, bytes = 0;
+        for (const auto& item : host_.retained_) {
+            values += item.block != nullptr ? item.block->pins.size() : 1;
+            bytes += item.size;
+        }
+        if (values > most_kept_values || bytes > most_kept_bytes)
+            problem("program.retain_size",
+                    fmt::format("the programs up to this one keep {} values in {} bytes, and a machine keeps at most {} in {}", values,
+                                bytes, most_kept_values, most_kept_bytes),
+                    "keep less, or write large tables into a file of the program's own in stop()");
     }
     /// Nobody holds a button after a restart.
     void refuse_kept_buttons() {

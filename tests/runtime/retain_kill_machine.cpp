@@ -56,12 +56,15 @@ TEST(RetainStoreKilled, AtAThousandInstantsNothingIsTornAndNothingPromisedIsLost
             count_for_ever(directory, ends[1]);
         }
         ::close(ends[1]);
-        clock.sleep_until(clock.now() + std::chrono::microseconds{random() % 4000});
+        // Somewhere in the writing behind one that was promised, however fast this computer is; each fourth, before it has written anything.
+        std::uint64_t told = 0;
+        if (i % 4 != 0 && ::read(ends[0], &told, sizeof told) == sizeof told) promised = told;
+        clock.sleep_until(clock.now() + std::chrono::microseconds{random() % 2000});
         ::kill(child, SIGKILL);
         int status = 0;
         ::waitpid(child, &status, 0);
         EXPECT_TRUE(WIFSIGNALED(status)) << "it ended by itself: a save failed";
-        for (std::uint64_t told = 0; ::read(ends[0], &told, sizeof told) == sizeof told;) promised = told;
+        while (::read(ends[0], &told, sizeof told) == sizeof told) promised = told;
         ::close(ends[0]);
         for (const auto* beside : {"retain.0.new", "retain.1.new"}) with_a_rest += fs::exists(directory / beside) ? 1 : 0;
 
@@ -74,7 +77,7 @@ TEST(RetainStoreKilled, AtAThousandInstantsNothingIsTornAndNothingPromisedIsLost
         ASSERT_LE(loaded.kept.values.front().bits, promised + 1) << "kill " << i;
         promised = loaded.kept.values.front().bits;
     }
-    EXPECT_GT(promised, static_cast<std::uint64_t>(kills) / 10) << "it hardly ever came to write";
+    EXPECT_GE(promised, static_cast<std::uint64_t>(kills) / 4 * 3) << "each that was waited for has written";
     EXPECT_GT(with_a_rest, 0) << "no kill met a writing";
     fs::remove_all(directory);
 }

@@ -245,5 +245,49 @@ TEST_F(RetainedValues, BothSlotsDamagedIsAnAlarmUntilReset) {
     EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::values_lost))) << machine->alarms();
 }
 
+/// As much as a machine may keep, and one more.
+template <std::size_t Extra>
+struct Greedy final : Program {
+    std::array<bool, most_kept_values + Extra> values{};
+    void declare(Declaration& d) override {
+        d.retain("values", values);
+        d.task<&Greedy::scan>("main");
+    }
+    void scan(TaskContext&) { values.back() = true; }
+};
+
+TEST_F(RetainedValues, WhatCouldNotBeReadAgainIsRefusedAndTheMostThatIsTakenComesBack) {
+    auto c = config();
+    c.programs[0].entry = &entry_of<Greedy<1>>;
+    World world{c, Instant{}};
+    const auto refused = Machine::build(c, world.bus());
+    ASSERT_EQ(refused.index(), 1u);
+    EXPECT_EQ(std::get<1>(refused).front().code, "program.retain_size");
+
+    c.programs[0].entry = &entry_of<Greedy<0>>;
+    run(c, 100ms);
+    end();
+    EXPECT_EQ(kept().values.size(), most_kept_values);
+    EXPECT_EQ(kept_text("p.values[8191]"), "1");
+}
+
+TEST_F(RetainedValues, AButtonIsNotKept) {
+    struct Held final : Program {
+        bool pressed = false;
+        void declare(Declaration& d) override {
+            d.operator_button("pressed", pressed);
+            d.retain("pressed", pressed);
+            d.task<&Held::scan>("main");
+        }
+        void scan(TaskContext&) {}
+    };
+    auto c = config();
+    c.programs[0].entry = &entry_of<Held>;
+    World world{c, Instant{}};
+    const auto refused = Machine::build(c, world.bus());
+    ASSERT_EQ(refused.index(), 1u);
+    EXPECT_EQ(std::get<1>(refused).front().code, "program.retain_button");
+}
+
 }  // namespace
 }  // namespace taktwerk::runtime::testing
