@@ -87,13 +87,13 @@ void print_kept(const Kept& kept) {
     };
     for (const auto& value : kept.values)
         table.add({value.name,
-                   value.kind == RetainKind::retain ? "retain" : "persistent",
+                   std::string(word(value.kind)),
                    std::string(word(value.type)),
                    text_of(value.type, value.bits),
                    {aside(value.unclaimed), Tone::faint}});
     for (const auto& block : kept.blocks)
         table.add({block.name,
-                   block.kind == RetainKind::retain ? "retain" : "persistent",
+                   std::string(word(block.kind)),
                    block.type,
                    fmt::format("{} bytes", block.bytes.size()),
                    {aside(block.unclaimed), Tone::faint}});

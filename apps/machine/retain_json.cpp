@@ -15,14 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace runtime;
 
-constexpr std::string_view kind_word(RetainKind kind) { return kind == RetainKind::retain ? "retain" : "persistent"; }
-
-std::string hex(const std::vector<std::byte>& bytes) {
-    std::string out;
-    for (const auto byte : bytes) out += fmt::format("{:02x}", std::to_integer<unsigned>(byte));
-    return out;
-}
-
 std::string text_at(const Json& one, const char* key) {
     return one.contains(key) && one[key].is_string() ? one[key].get<std::string>() : std::string{};
 }
@@ -57,9 +49,9 @@ private:
 };
 
 std::string read_kind(const Json& one, RetainKind& kind) {
-    const auto text = text_at(one, "kind");
-    if (text != "retain" && text != "persistent") return R"("kind" is neither "retain" nor "persistent")";
-    kind = text == "retain" ? RetainKind::retain : RetainKind::persistent;
+    const auto found = find_retain_kind(text_at(one, "kind"));
+    if (!found) return R"("kind" is neither "retain" nor "persistent")";
+    kind = *found;
     return {};
 }
 
@@ -81,13 +73,9 @@ std::string read_block(const Json& one, KeptBlock& block) {
     if (std::from_chars(layout.data(), layout.data() + layout.size(), block.layout, 16).ptr != layout.data() + layout.size() ||
         layout.empty())
         return "\"layout\" is no hexadecimal number";
-    if (bytes.size() % 2 != 0 || bytes.empty() || bytes.size() > 2 * largest_kept_block) return "\"bytes\" are no bytes";
-    for (std::size_t i = 0; i < bytes.size(); i += 2) {
-        std::uint8_t byte = 0;
-        if (std::from_chars(bytes.data() + i, bytes.data() + i + 2, byte, 16).ptr != bytes.data() + i + 2)
-            return "\"bytes\" are no hexadecimal bytes";
-        block.bytes.push_back(std::byte{byte});
-    }
+    auto read = bytes_of_hex(bytes);
+    if (!read) return "\"bytes\" are no hexadecimal bytes of a block";
+    block.bytes = std::move(*read);
     return {};
 }
 
@@ -106,10 +94,8 @@ Json json_of(const Kept& kept) {
     Json out{{"taktwerk_retain", 1}, {"number", kept.number}};
     auto& values = out["values"] = Json::array();
     for (const auto& value : kept.values) {  // text, so that no reader rounds what is no double
-        values.push_back({{"name", value.name},
-                          {"kind", kind_word(value.kind)},
-                          {"type", word(value.type)},
-                          {"value", text_of(value.type, value.bits)}});
+        values.push_back(
+            {{"name", value.name}, {"kind", word(value.kind)}, {"type", word(value.type)}, {"value", text_of(value.type, value.bits)}});
         if (value.unclaimed > 0) values.back()["unclaimed"] = value.unclaimed;
     }
     auto& parameters = out["parameters"] = Json::array();
@@ -120,10 +106,10 @@ Json json_of(const Kept& kept) {
     auto& blocks = out["blocks"] = Json::array();
     for (const auto& block : kept.blocks) {
         blocks.push_back({{"name", block.name},
-                          {"kind", kind_word(block.kind)},
+                          {"kind", word(block.kind)},
                           {"type", block.type},
                           {"layout", fmt::format("{:016x}", block.layout)},
-                          {"bytes", hex(block.bytes)}});
+                          {"bytes", hex_of(block.bytes)}});
         if (block.unclaimed > 0) blocks.back()["unclaimed"] = block.unclaimed;
     }
     auto& axes = out["axes"] = Json::array();  // for people alone: a position belongs to one encoder, and is not taken back from a file

@@ -55,6 +55,11 @@ Result<Json> read_json(std::string_view text, int deepest) {
     return json;
 }
 
+std::string text_in(const nlohmann::ordered_json& object, const char* key) {
+    const auto found = object.is_object() ? object.find(key) : object.end();
+    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto lead = static_cast<unsigned char>(text[i]);

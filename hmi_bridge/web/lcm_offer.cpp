@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "hmi_bridge/web/json_text.hpp"
+
 namespace taktwerk::hmi::web {
 namespace {
 
@@ -19,11 +21,6 @@ LcmOffer cannot(std::string why) {
 const Json* member(const Json& object, const char* key) {
     const auto found = object.find(key);
     return found == object.end() ? nullptr : &*found;
-}
-
-std::string text_in(const Json& object, const char* key) {
-    const auto* value = member(object, key);
-    return value != nullptr && value->is_string() ? value->get<std::string>() : std::string{};
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "axes/axis/retained_position.hpp"
@@ -18,6 +20,13 @@ struct RetainedAxis {
     axes::RetainedPosition position;
     axes::Gearing gearing;
 };
+
+[[nodiscard]] constexpr std::string_view word(RetainKind kind) noexcept { return kind == RetainKind::retain ? "retain" : "persistent"; }
+[[nodiscard]] constexpr std::optional<RetainKind> find_retain_kind(std::string_view text) noexcept {
+    for (const auto kind : {RetainKind::retain, RetainKind::persistent})
+        if (word(kind) == text) return kind;
+    return std::nullopt;
+}
 
 /// How long an item has had nobody to claim it: starts of the machine. What an edited program dropped is kept that long, and is found by
 /// the one that comes back (a rollback).

@@ -1,6 +1,7 @@
 #include "runtime/retain/kept_text.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -21,11 +22,7 @@ constexpr std::int64_t most_counts = std::int64_t{1} << 52;  // what a double st
 
 std::uint32_t sum(std::string_view text) { return crc32(std::as_bytes(std::span(text.data(), text.size()))); }
 
-/// Shortest text that reads back as the same number.
-std::string exact(double value) {
-    char text[40];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
+std::string exact(double value) { return text_of(fb::PinKind::LREAL, std::bit_cast<std::uint64_t>(value)); }
 
 bool plain(char c) noexcept {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) > 127 ||
@@ -52,8 +49,6 @@ std::string name_of(std::string_view word, bool& fits) {
     fits = fits && !out.empty() && as_word(out) == word;  // one spelling: no name stands there twice
     return out;
 }
-
-constexpr std::string_view kind_word(RetainKind kind) noexcept { return kind == RetainKind::retain ? "retain" : "persistent"; }
 
 /// What some axis could have. A check sum says that nobody altered it by mistake, not that it makes sense.
 bool possible(const RetainedAxis& axis) {
@@ -128,14 +123,9 @@ private:
         block.type = words_.next();
         words_.read(block.layout, 16);
         words_.read(block.unclaimed);
-        const auto digits = words_.next();
-        words_.refuse_unless(digits.size() % 2 == 0 && digits.size() <= 2 * largest_kept_block);
-        for (std::size_t i = 0; words_.good() && i < digits.size(); i += 2) {
-            std::uint8_t byte = 0;
-            const auto* stop = digits.data() + i + 2;
-            words_.refuse_unless(std::from_chars(digits.data() + i, stop, byte, 16).ptr == stop);
-            block.bytes.push_back(std::byte{byte});
-        }
+        auto bytes = bytes_of_hex(words_.next());
+        words_.refuse_unless(bytes.has_value());
+        if (bytes) block.bytes = std::move(*bytes);
         if (words_.good()) kept_.blocks.push_back(std::move(block));
     }
     void parameter() {
@@ -154,9 +144,9 @@ private:
         return out;
     }
     RetainKind kind() {
-        const auto text = words_.next();
-        words_.refuse_unless(text == kind_word(RetainKind::retain) || text == kind_word(RetainKind::persistent));
-        return text == kind_word(RetainKind::persistent) ? RetainKind::persistent : RetainKind::retain;
+        const auto kind = find_retain_kind(words_.next());
+        words_.refuse_unless(kind.has_value());
+        return kind.value_or(RetainKind::retain);
     }
     /// Which of two of one name would it be?
     template <class T>
@@ -174,6 +164,24 @@ private:
 
 }  // namespace
 
+std::string hex_of(std::span<const std::byte> bytes) {
+    std::string out;
+    for (const auto byte : bytes) fmt::format_to(std::back_inserter(out), "{:02x}", std::to_integer<unsigned>(byte));
+    return out;
+}
+
+std::optional<std::vector<std::byte>> bytes_of_hex(std::string_view digits) {
+    if (digits.empty() || digits.size() % 2 != 0 || digits.size() > 2 * largest_kept_block) return std::nullopt;
+    std::vector<std::byte> out;
+    for (std::size_t i = 0; i < digits.size(); i += 2) {
+        std::uint8_t byte = 0;
+        const auto* stop = digits.data() + i + 2;
+        if (std::from_chars(digits.data() + i, stop, byte, 16).ptr != stop) return std::nullopt;
+        out.push_back(std::byte{byte});
+    }
+    return out;
+}
+
 std::string text_of(const Kept& kept) {
     std::string text = fmt::format("taktwerk retain 1\nnumber {}\n", kept.number);
     const auto out = std::back_inserter(text);
@@ -185,14 +193,11 @@ std::string text_of(const Kept& kept) {
                        exact(g.feed), g.inverted ? 1 : 0);
     }
     for (const auto& value : kept.values)
-        fmt::format_to(out, "value {} {} {} {} {}\n", as_word(value.name), kind_word(value.kind), word(value.type),
+        fmt::format_to(out, "value {} {} {} {} {}\n", as_word(value.name), word(value.kind), word(value.type),
                        text_of(value.type, value.bits), value.unclaimed);
-    for (const auto& block : kept.blocks) {
-        fmt::format_to(out, "block {} {} {} {:016x} {} ", as_word(block.name), kind_word(block.kind), block.type, block.layout,
-                       block.unclaimed);
-        for (const auto byte : block.bytes) fmt::format_to(out, "{:02x}", std::to_integer<unsigned>(byte));
-        text += '\n';
-    }
+    for (const auto& block : kept.blocks)
+        fmt::format_to(out, "block {} {} {} {:016x} {} {}\n", as_word(block.name), word(block.kind), block.type, block.layout,
+                       block.unclaimed, hex_of(block.bytes));
     for (const auto& parameter : kept.parameters)
         fmt::format_to(out, "parameter {} {} {} {}\n", as_word(parameter.name), exact(parameter.value), exact(parameter.configured),
                        parameter.unclaimed);

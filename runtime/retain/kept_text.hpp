@@ -15,9 +15,12 @@
 // nobody can have (an axis beyond what its counts resolve, 300 in a USINT) are damage, whatever the check sum says. A file of an older
 // runtime (`taktwerk positions 1`, axes alone) is read as well. Pure functions; they never throw but for want of memory.
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runtime/retain/kept.hpp"
 
@@ -29,6 +32,10 @@ inline constexpr std::size_t largest_kept_block = 8192;               ///< bytes
 inline constexpr std::size_t most_kept_bytes = std::size_t{1} << 20;  ///< of all of it in memory
 /// A file with more of one kind is damage: those of the programs, and what is kept aside (KeptValues).
 inline constexpr std::size_t most_kept_items = 16384;
+
+/// Two hexadecimal digits a byte. Nothing where the text is none of these, or of more than largest_kept_block.
+[[nodiscard]] std::string hex_of(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<std::vector<std::byte>> bytes_of_hex(std::string_view digits);
 
 [[nodiscard]] std::string text_of(const Kept& kept);
 /// Nothing where the file is torn, altered, or of another kind.

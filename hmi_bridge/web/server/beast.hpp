@@ -10,6 +10,7 @@
 
 #include "core/clock.hpp"
 #include "core/time.hpp"
+#include "hmi_bridge/web/json_text.hpp"
 
 namespace taktwerk::hmi::web {
 
@@ -26,11 +27,5 @@ using namespace std::chrono_literals;
 inline Instant now() { return SystemClock{}.now(); }
 
 inline std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-/// Empty where it is not there or no text: what listens at a socket's path may be anything.
-inline std::string text_in(const Json& object, const char* key) {
-    const auto found = object.is_object() ? object.find(key) : object.end();
-    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
-}
 
 }  // namespace taktwerk::hmi::web
