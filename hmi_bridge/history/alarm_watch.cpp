@@ -77,7 +77,7 @@ AlarmWatch::Known& AlarmWatch::known(const AlarmFact& fact, Instant since, React
 const AlarmWatch::Change& AlarmWatch::unseen(std::uint64_t more) {
     if (!unseen_ || now_ - unseen_->left > flutters) {
         constexpr auto alarm = runtime::id(runtime::MachineAlarm::alarm_log_full);
-        unseen_.emplace();
+        unseen_.emplace(Known{});  // clang 14 takes it for not constructible without
         unseen_->fact = {alarm, AlarmSource::machine, 0, 0, 0};
         unseen_->told.key = next_key_++;
         auto& row = unseen_->told.row;

@@ -11,6 +11,9 @@ import { PageClient } from './page_client';
 
 const build = process.env['TAKTWERK_BUILD'] ?? '', source = process.env['TAKTWERK_SOURCE'] ?? '';
 const [seconds = 10, pairs = 6, minutes = 6] = process.argv.slice(2).map(Number);
+// As a machine is set up (realtime.cpus): the cycle has a CPU of its own, and everything else the others. TAKTWERK_PIN=0: wherever the system puts it.
+const pinned = process.env['TAKTWERK_PIN'] !== '0' && cpus().length > 1;
+const others = `0-${cpus().length - 2}`;
 const axes = 64, clients = 4, usual_rate = 20, raised_rate = 200;
 const folder = mkdtempSync(join(tmpdir(), 'hmi-figures-')), socket = join(folder, 'figures.sock');
 const children: ChildProcess[] = [];
@@ -26,11 +29,12 @@ function machine_file(): string {
         ...list.map((i) => `    - { name: d${i}, profile: sv33-e }`), 'axes:',
         ...list.map((i) => `  a${i}: { slave: d${i}, unit: mm, gearing: { counts_per_revolution: 131072, feed: 10 mm }, limits: { velocity: 300 mm/s, acceleration: 2000 mm/s2, jerk: 50000 mm/s3 }, following_error: { window: 50 mm, time: 1 s }, homing: { kind: set_here }, require_homed: false }`),
         'programs:', `  shuttles: { library: ${join(build, 'tests/bench/shuttles.so')}, autostart: true, tasks: { main: { every: 1 cycles } } }`,
-        'realtime: { priority: 80, lock_memory: true, required: false }', 'watch: { overruns_allowed: 1000 }', 'simulation: { supervision: relaxed }',
+        `realtime: { priority: 80, lock_memory: true, required: false${pinned ? `, cpus: [${cpus().length - 1}]` : ''} }`, 'watch: { overruns_allowed: 1000 }', 'simulation: { supervision: relaxed }',
         'hmi:', `  socket: ${socket}`, '  lcm: { enabled: true, required: false, commands: disabled }', ''].join('\n');
 }
 function start(args: string[]): { process: ChildProcess; said: () => string } {
-    const child = spawn(join(build, 'taktwerk'), args, { stdio: ['ignore', 'pipe', 'pipe'], cwd: source });
+    const command = [...(pinned && args[0] !== 'run' ? ['taskset', '-c', others] : []), join(build, 'taktwerk'), ...args];
+    const child = spawn(command[0] ?? '', command.slice(1), { stdio: ['ignore', 'pipe', 'pipe'], cwd: source });
     children.push(child);
     let said = '';
     for (const stream of [child.stdout, child.stderr]) stream?.on('data', (text) => (said = (said + String(text)).slice(-20_000)));
@@ -81,6 +85,7 @@ async function computing(machine: Machine, signal: string, from: number, to: num
 }
 
 async function cycles(machine: Machine): Promise<void> {
+    if (pairs === 0) return;
     const listed = ((await machine.told({ cmd: 'scope_signals' }))['scope'] as Json)['signals'] as { name: string; unit: string }[];
     const signal = listed.find((s) => /comput/.test(s.name));
     if (!signal) throw new Error('the recorder has no computing time');
@@ -112,7 +117,7 @@ async function cycles(machine: Machine): Promise<void> {
         const p = (part: number) => median(windows.map((w) => percentile(w, part))).toFixed(1);
         say(`  ${name.padEnd(28)} p50 ${p(0.5)} us, p99 ${p(0.99)} us, p99.9 ${p(0.999)} us  (medians of ${windows.length} windows of ${seconds} s)`);
     };
-    say(`computing time of a cycle, ${axes} axes that move, 1 ms, every cycle counted`);
+    say(`computing time of a cycle, ${axes} axes that move, 1 ms, every cycle counted; the cycle ${pinned ? 'on a CPU of its own' : 'wherever the system puts it'}`);
     row('without the page', off);
     row(`with ${clients} pages`, on);
     const together = (windows: number[][]) => percentile(windows.flat(), 0.99);
