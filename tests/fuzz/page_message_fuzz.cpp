@@ -7,6 +7,7 @@
 #include "hmi_bridge/web/audit_line.hpp"
 #include "hmi_bridge/web/message_age.hpp"
 #include "hmi_bridge/web/page_message.hpp"
+#include "tests/fuzz/message_count.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
 using namespace taktwerk;
@@ -50,9 +51,11 @@ void look_at_forwarded(const PageMessage& message) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     MessageAge age;
     Instant now{std::chrono::seconds{1}};
+    static fuzz::MessageCount count;
     std::string_view rest(reinterpret_cast<const char*>(data), size);
     for (int lines = 0; lines < 8 && !rest.empty(); ++lines) {
         const auto end = std::min(rest.find('\n'), rest.size());
+        count.one();
         const auto read = read_page_message(rest.substr(0, end));
         rest.remove_prefix(std::min(end + 1, rest.size()));
         now += std::chrono::milliseconds{50};

@@ -10,6 +10,7 @@
 #include "hmi_bridge/socket/json_requests.hpp"
 #include "hmi_bridge/views/view_answers.hpp"
 #include "runtime/recording/signal_ring.hpp"
+#include "tests/fuzz/message_count.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
@@ -113,10 +114,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     requests.on_open(1, {});
     Instant now{std::chrono::seconds{1}};
 
+    static fuzz::MessageCount count;
     std::string_view rest(reinterpret_cast<const char*>(data), size);
     for (int lines = 0; lines < 8 && !rest.empty(); ++lines) {
         const auto end = std::min(rest.find('\n'), rest.size());
         const auto before = machine.submitted.size();
+        count.one();
         requests.on_line(1, rest.substr(0, end), now);
         rest.remove_prefix(std::min(end + 1, rest.size()));
         if (machine.submitted.size() > before + 1) std::abort();
