@@ -64,7 +64,7 @@ std::string usage(const CLI::App& app, const std::string& path) {
     if (!options.empty()) line += "[\\fIoptions\\fR]\n";
     for (const auto* option : app.get_options([](const CLI::Option* o) { return o->get_positional(); })) {
         const auto name = roff(names(*option));
-        line += fmt::format(option->get_required() ? "\\fI{}\\fR\n" : "[\\fI{}\\fR]\n", name);
+        line += option->get_required() ? fmt::format("\\fI{}\\fR\n", name) : fmt::format("[\\fI{}\\fR]\n", name);
     }
     if (!commands_of(app).empty()) line += "\\fIcommand\\fR ...\n";
     return line;
@@ -162,6 +162,37 @@ void collect(const CLI::App& app, const std::string& path, std::string& known, s
     }
 }
 
+/// The generated parts go in where their names stand.
+constexpr const char* script = R"BASH(# bash completion of taktwerk(1): made by `taktwerk docs completion`
+_taktwerk() {
+    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} path='' words='' i
+    for ((i = 1; i < COMP_CWORD; i++)); do
+        case "$path ${COMP_WORDS[i]}" in
+@KNOWN@            *) continue ;;
+        esac
+        path="$path ${COMP_WORDS[i]}"
+    done
+    case "$before" in
+        -s|--socket)
+            for i in /run/taktwerk/*.sock "${XDG_RUNTIME_DIR:-/nonexistent}"/taktwerk/*.sock "/tmp/taktwerk-$UID"/*.sock; do
+                [[ ! -S $i ]] || words+=" $(basename "$i" .sock)"
+            done ;;
+    esac
+    case "$path $before" in
+@VALUES@        *) ;;
+    esac
+    if [[ -z $words ]]; then
+        case "$path" in
+@WORDS@        esac
+    fi
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
+    [[ ${#COMPREPLY[@]} -gt 0 || $word == -* ]] || mapfile -t COMPREPLY < <(compgen -f -- "$word")
+}
+complete -o filenames -F _taktwerk taktwerk
+)BASH";
+
+void put_in(std::string& text, std::string_view name, const std::string& part) { text.replace(text.find(name), name.size(), part); }
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> man_pages(const CLI::App& root, const std::string& version) {
@@ -173,34 +204,11 @@ std::vector<std::pair<std::string, std::string>> man_pages(const CLI::App& root,
 std::string bash_completion(const CLI::App& root) {
     std::string known, words, values;
     collect(root, "", known, words, values);
-    return fmt::format(R"(# bash completion of taktwerk(1): made by `taktwerk docs completion`
-_taktwerk() {{
-    local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} path='' words='' i
-    for ((i = 1; i < COMP_CWORD; i++)); do
-        case "$path ${{COMP_WORDS[i]}}" in
-{}            *) continue ;;
-        esac
-        path="$path ${{COMP_WORDS[i]}}"
-    done
-    case "$before" in
-        -s|--socket)
-            for i in /run/taktwerk/*.sock "${{XDG_RUNTIME_DIR:-/nonexistent}}"/taktwerk/*.sock "/tmp/taktwerk-$UID"/*.sock; do
-                [[ ! -S $i ]] || words+=" $(basename "$i" .sock)"
-            done ;;
-    esac
-    case "$path $before" in
-{}    esac
-    if [[ -z $words ]]; then
-        case "$path" in
-{}        esac
-    fi
-    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
-    [[ ${{#COMPREPLY[@]}} -gt 0 || $word == -* ]] || mapfile -t COMPREPLY < <(compgen -f -- "$word")
-}
-}
-complete -o filenames -F _taktwerk taktwerk
-)",
-                       known, values, words);
+    std::string text = script;
+    put_in(text, "@KNOWN@", known);
+    put_in(text, "@VALUES@", values);
+    put_in(text, "@WORDS@", words);
+    return text;
 }
 
 }  // namespace taktwerk::apps
