@@ -38,7 +38,7 @@ public:
     }
     bool gets(const std::string& message, std::chrono::milliseconds patience) {
         const auto end = std::chrono::steady_clock::now() + patience;
-        while (std::ranges::find(all(), message) == all_.end()) {
+        while (count(message) == 0) {
             if (std::chrono::steady_clock::now() > end) return false;
             pollfd news{socket_, POLLIN, 0};
             ::poll(&news, 1, 20);

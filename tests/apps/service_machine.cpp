@@ -116,10 +116,9 @@ TEST_F(ServiceRun, ARestartBehindACrashIsInManualMode) {
 
 TEST_F(ServiceRun, TheLogGoesToTheJournalOnlyWhereTheOutputIsTheJournals) {
     ::setenv("JOURNAL_STREAM", "1:1", 1);  // somebody else's
-    Child run({taktwerk, "run", machine(), "--duration", "1s"});
-    EXPECT_EQ(run.wait(30s), exit_ok);
+    Child run({taktwerk, "run", machine()});
     ::unsetenv("JOURNAL_STREAM");
-    EXPECT_THAT(run.text(), HasSubstr("running, manual mode"));
+    EXPECT_TRUE(run.says("running, manual mode", 30s)) << run.text();
 }
 
 }  // namespace
