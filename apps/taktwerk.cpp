@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
     Action action;
     add_run(app, action);
     add_check(app, action);
+    add_status(app, action);
     add_monitor(app, action);
     add_hmi(app, action);
     add_lcm(app, action);

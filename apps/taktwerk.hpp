@@ -24,8 +24,9 @@ void add_esi(CLI::App& app, Action& action);    ///< list, show, import
 void add_plot(CLI::App& app, Action& action);
 /// Measures an axis while it is held.
 void add_measure(CLI::App& app, Action& action);
-void add_hmi(CLI::App& app, Action& action);  ///< the page's server
-void add_lcm(CLI::App& app, Action& action);  ///< spy, record, play
+void add_hmi(CLI::App& app, Action& action);     ///< the page's server
+void add_lcm(CLI::App& app, Action& action);     ///< spy, record, play
+void add_status(CLI::App& app, Action& action);  ///< is a running machine well?
 void add_monitor(CLI::App& app, Action& action);
 void add_operate(CLI::App& app, Action& action);  ///< jog, home, enable, reset, start, stop, set, mode, ...
 void add_alarms(CLI::App& app, Action& action);   ///< of a running machine: those that stand, and the history

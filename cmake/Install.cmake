@@ -1,8 +1,9 @@
-# cmake --install BUILD --prefix P [--component runtime|sdk]
+# cmake --install BUILD --prefix P [--component runtime|hmi|sdk]
 #
 #   runtime  bin/taktwerk · share/taktwerk/{drives,machines} · lib/taktwerk/programs (the examples)
 #            share/taktwerk/schema (JSON Schema of machine and drive files, for editors) · share/taktwerk/lcm (the types of the channels)
 #            share/doc/taktwerk (README, LICENSE, docs/ and the protocol of the socket, with their links to each other intact)
+#   hmi      share/taktwerk/hmi: the page, where it could be built
 #   sdk      include/taktwerk/ · lib/cmake/Taktwerk: what find_package(Taktwerk) needs to build programs elsewhere
 #            include/taktwerk_lcm/ · share/taktwerk/{lcm,examples/lcm}: what somebody else's HMI needs (Taktwerk::lcm, docs/lcm.md)
 #
@@ -61,3 +62,5 @@ if(TARGET taktwerk_lcm_types)
     FILES_MATCHING PATTERN "*.lcm" PATTERN examples EXCLUDE)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/hmi_bridge/lcm/examples/" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk/examples/lcm" COMPONENT sdk)
 endif()
+
+include(Package)

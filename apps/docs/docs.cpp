@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "apps/docs/command_pages.hpp"
 #include "apps/docs/device_page.hpp"
 #include "apps/docs/drive_pages.hpp"
 #include "apps/docs/reference_pages.hpp"
@@ -20,6 +21,7 @@
 #include "config/drive_file/drive_library.hpp"
 #include "config/reference/reference.hpp"
 #include "fb_library/block_reference.hpp"
+#include "programs/api/abi.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -39,6 +41,8 @@ constexpr std::array<Page, 6> pages{{
 }};
 
 constexpr const char* drives_page = "drives";
+constexpr const char* manual_pages = "man";
+constexpr const char* completion = "completion";
 
 /// To standard output when there is no file.
 int write_text(const std::string& text, const std::string& output) {
@@ -90,22 +94,33 @@ int write_page(const std::string& name, const std::string& output) {
     return exit_ok;
 }
 
+int write_manual(const CLI::App& root, const std::string& folder) {
+    const auto written = man_pages(root, sdk_version);
+    if (folder.empty()) return write_text(written.front().second, {});
+    for (const auto& [name, text] : written)
+        if (const int code = write_text(text, folder + "/" + name); code != exit_ok) return code;
+    return exit_ok;
+}
+
 }  // namespace
 
 void add_docs(CLI::App& app, Action& action) {
-    auto* sub = app.add_subcommand("docs", "print a reference page as Markdown");
+    auto* sub = app.add_subcommand("docs", "print a reference page as Markdown, the man pages, or the completion for bash");
     struct Options {
         std::string page, drive, output;
     };
     auto options = std::make_shared<Options>();
     std::vector<std::string> names;
     for (const auto& page : pages) names.emplace_back(page.name);
-    names.emplace_back(drives_page);
+    for (const char* name : {drives_page, manual_pages, completion}) names.emplace_back(name);
     sub->add_option("PAGE", options->page, "which page")->required()->check(CLI::IsMember(names));
     sub->add_option("DRIVE", options->drive, "with `drives`: only this one");
-    sub->add_option("-o,--output", options->output, "file; default: standard output. With `drives`: the folder of the documentation");
-    sub->callback([&action, options] {
-        action = [options] {
+    sub->add_option("-o,--output", options->output,
+                    "file; default: standard output. With `drives` the folder of the documentation, with `man` one for all pages");
+    sub->callback([&action, &app, options] {
+        action = [&app, options] {
+            if (options->page == manual_pages) return write_manual(app, options->output);
+            if (options->page == completion) return write_text(bash_completion(app), options->output);
             return options->page == drives_page ? write_drives(options->drive, options->output)
                                                 : write_page(options->page, options->output);
         };

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "apps/terminal/json_text.hpp"
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bus.hpp"
@@ -70,29 +69,17 @@ void MachineLog::print(std::string lines) {
     std::fflush(stdout);
 }
 
+MachineLog::MachineLog(Machine& machine, Instant start, bool json, Sink sink)
+    : MachineLog(machine, start,
+                 [json, sink = std::move(sink)](const LogEntry& entry) { sink(json ? json_line(entry) : text_lines(entry)); }) {}
+
 void MachineLog::say(Instant now, const std::string& event, const std::string& what) const {
-    const double at = to_seconds(now - start_);
-    sink_(json_ ? fmt::format("{{\"t\":{:.3f},\"event\":{},\"text\":{}}}\n", at, json_text(event), json_text(what))
-                : fmt::format("{:9.3f} s  {:<9} {}\n", at, event, what));
+    sink_({to_seconds(now - start_), event, what});
 }
 
 void MachineLog::say_alarm(Instant now, const std::string& event, const AlarmText& words) {
     const auto reaction = words.reaction == "none" ? std::string{} : fmt::format(" [{}]", words.reaction);
-    const auto headline = fmt::format("{}: {}{}", words.source, words.english, reaction);
-    if (json_) {
-        sink_(fmt::format("{{\"t\":{:.3f},\"event\":{},\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
-                          to_seconds(now - start_), json_text(event), json_text(headline), json_text(words.name), json_text(words.chinese),
-                          json_text(words.cause), json_text(words.remedy), json_text(words.reset)));
-        return;
-    }
-    std::string lines = fmt::format("{:9.3f} s  {:<9} {}\n", to_seconds(now - start_), event, headline);
-    const auto more = [&](std::string_view before, const std::string& text) {
-        if (!text.empty()) lines += fmt::format("{:13}{:<9} {}{}\n", "", "", before, text);
-    };
-    more("", words.chinese);
-    more("why: ", words.cause);
-    more("-> ", words.remedy.empty() ? words.remedy : fmt::format("{} ({})", words.remedy, words.reset));
-    sink_(std::move(lines));
+    sink_({to_seconds(now - start_), event, fmt::format("{}: {}{}", words.source, words.english, reaction), {}, &words});
 }
 
 void MachineLog::note(Instant now, const AlarmFact& fact, bool is_new, const std::string& event) {
@@ -189,11 +176,8 @@ void MachineLog::events(Instant now, const Snapshot& s) {
             say(now, "missed", fmt::format("{} events of commands came too fast to be shown", event.number - last_event_ - 1));
         last_event_ = event.number;
         const auto words = hmi::describe(event, machine_.layout());
-        say(now, std::string(hmi::word(event.what)), fmt::format("axis {}: {}", machine_.layout().axes[event.axis].name, words.what));
-        if (!json_) {
-            fmt::print("{:13}{:<9} -> {}\n", "", "", words.remedy);
-            std::fflush(stdout);
-        }
+        sink_({to_seconds(now - start_), std::string(hmi::word(event.what)),
+               fmt::format("axis {}: {}", machine_.layout().axes[event.axis].name, words.what), words.remedy});
     }
     if (s.events_dropped > events_dropped_)
         say(now, "missed", fmt::format("{} more commands were refused or aborted", s.events_dropped - events_dropped_));

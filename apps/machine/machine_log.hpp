@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/machine/log_entry.hpp"
 #include "runtime/machine/machine.hpp"
 
 namespace taktwerk::apps {
@@ -15,9 +16,9 @@ public:
     using Sink = std::function<void(std::string)>;  ///< whole lines
     /// To standard output, at once.
     static void print(std::string lines);
-    /// `json`: one object a line instead of text.
-    MachineLog(runtime::Machine& machine, Instant start, bool json, Sink sink = &MachineLog::print)
-        : machine_(machine), start_(start), json_(json), sink_(std::move(sink)) {}
+    MachineLog(runtime::Machine& machine, Instant start, LogSink sink) : machine_(machine), start_(start), sink_(std::move(sink)) {}
+    /// As lines. `json`: one object a line instead of text.
+    MachineLog(runtime::Machine& machine, Instant start, bool json, Sink sink = &MachineLog::print);
 
     /// Compares with what was said before.
     void step(Instant now, const runtime::Snapshot* snapshot);
@@ -49,8 +50,7 @@ private:
     };
     runtime::Machine& machine_;
     Instant start_;
-    bool json_;
-    Sink sink_;
+    LogSink sink_;
     std::string progress_;
     std::vector<axes::AxisState> states_;
     std::vector<bool> homed_;

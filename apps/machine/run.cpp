@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -17,14 +18,18 @@
 #include "apps/machine/crash_line.hpp"
 #include "apps/machine/file_thread.hpp"
 #include "apps/machine/history_file.hpp"
+#include "apps/machine/journal.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/modbus_keeper.hpp"
 #include "apps/machine/page_server.hpp"
 #include "apps/machine/recordings_folder.hpp"
 #include "apps/machine/run_files.hpp"
+#include "apps/machine/service_manager.hpp"
 #include "apps/machine/sim_hands.hpp"
+#include "apps/machine/status_line.hpp"
 #include "apps/machine/stop_signal.hpp"
+#include "apps/machine/unfinished_run.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -39,6 +44,7 @@
 #include "hmi_bridge/history/alarm_history.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "hmi_bridge/socket/socket_path.hpp"
 #include "hmi_bridge/views/view_answers.hpp"
 #include "modbus/line/tty_line.hpp"
 #include "modbus/tcp/tcp_exchange.hpp"
@@ -55,6 +61,7 @@ using namespace runtime;
 
 struct RunOptions {
     std::string start = "warm";
+    std::string run_before;  ///< what is to be said of it; empty: it ended in order
     std::string file, trace, pcap, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
@@ -274,11 +281,17 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
                        return options.json ? fmt::format("{{\"event\":\"missing\",\"text\":{}}}\n", json_text(text)) : text + "\n";
                    }};
     const auto put = [&out](std::string lines) { out.put(std::move(lines)); };
-    MachineLog log{machine, start, options.json, put};
+    const Journal journal{machine.layout().machine};
+    const bool to_journal = !options.json && output_is_journal(std::getenv("JOURNAL_STREAM"));
+    MachineLog log{machine, start, [&](const LogEntry& entry) {
+                       if (!to_journal || !journal.take(entry)) put(options.json ? json_line(entry) : text_lines(entry));
+                   }};
     // For the page: in text, also what is not printed.
     const auto tail = std::make_shared<hmi::LogTail>();
     MachineLog kept{machine, start, false, [tail](const std::string& lines) { tail->add(lines); }};
 
+    if (!options.run_before.empty())
+        for (auto* each : {&log, &kept}) each->say(start, "restart", options.run_before);
     say_kept(log, start, machine, options);
     say_kept(kept, start, machine, options);
 
@@ -383,6 +396,8 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         else log.say(clock.now(), "page", begun.error().text());
     }
 
+    ServiceManager manager{[](const char* name) -> const char* { return std::getenv(name); }};
+    StatusLine status;
     RealtimeRunner runner{machine, world};
     bool said_stuck = false;
     runner.on_stuck = [&](const StuckCycle* stuck) {
@@ -423,6 +438,14 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         (*bridge)->set_progress(machine.bus_progress());
         (*bridge)->step(now);
         if (page) page->step();
+        if (const auto* snapshot = (*bridge)->snapshot(); snapshot == nullptr) {
+            manager.starting(now, machine.bus_progress());
+        } else {
+            manager.ready();
+            if (status.due(now)) manager.status(status.text(*snapshot));
+        }
+        manager.alive(now, machine.pulse().cycles);
+        if (stop_requested() || machine.shutdown_asked()) manager.stopping();
         judge((*bridge)->snapshot(), code);
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
         kept.step(now, (*bridge)->snapshot());
@@ -514,6 +537,24 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
     return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options);
 }
 
+/// Who restarts a machine that crashed is no operator: it comes up without power, and nothing in it begins by itself.
+int run_marked(LoadedFile loaded, RunOptions options) {
+    const auto socket = loaded.hmi.socket.empty() ? hmi::make_socket_path(loaded.machine.name) : Result<std::string>{loaded.hmi.socket};
+    if (!socket) return run_real(std::move(loaded), options);  // says why itself
+    auto mark = UnfinishedRun::begin(std::filesystem::path(*socket).replace_extension(".running"), boot_of_this_computer());
+    if (!mark && !options.quiet) print_error(mark.error());
+    if (mark && mark->before()) {
+        loaded.machine.start_mode = Mode::manual;
+        options.run_before = fmt::format(
+            "the run before this one (process {}) did not end in order: this one begins in manual mode, and no program starts by "
+            "itself. Look why it ended; then `taktwerk mode automatic` and `taktwerk start PROGRAM`",
+            mark->before()->process);
+    }
+    const int code = run_real(std::move(loaded), options);
+    if (mark) mark->ended();
+    return code;
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
@@ -560,7 +601,7 @@ void add_run(CLI::App& app, Action& action) {
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
-            return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
+            return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_marked(std::move(*loaded), *options);
         };
     });
 }

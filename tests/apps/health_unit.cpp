@@ -1,0 +1,83 @@
+// Is a machine well? Judged from the socket's answers, which may be anybody's.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/machine/health.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Json hello() {
+    return Json{{"machine", "cell"}, {"version", "0.1.0"}, {"pid", 17}, {"uptime_s", 60.0}, {"cycling", true}, {"progress", ""}};
+}
+Json state() {
+    return Json::parse(R"({"phase":"running","mode":"automatic","simulated":false,"emergency_stop":false,
+        "bus":{"phase":"operational","frames_lost":0},"statistics":{"cycles":60000,"missed_ticks":1,"lateness_max_ns":45000,"compute_max_ns":80000},
+        "axes":[{"powered":true,"homed":true},{"powered":false,"homed":true}],"programs":[{"name":"cell","state":"running"}],
+        "alarms":[{"source":"axis x","name":"following_warning","english":"w","reaction":"warn","standing":true}]})");
+}
+
+TEST(HealthOf, AMachineThatRunsIsWellAlsoWithAWarning) {
+    const auto h = health_of(hello(), state());
+    EXPECT_THAT(h.unwell, IsEmpty());
+    EXPECT_EQ(h.axes, 2u);
+    EXPECT_EQ(h.powered, 1u);
+    EXPECT_EQ(h.homed, 2u);
+    EXPECT_THAT(health_text(h), HasSubstr("cell: well\n"));
+    EXPECT_THAT(health_text(h), HasSubstr("wake-up at most 45 us late"));
+    const auto json = health_json(h);
+    EXPECT_EQ(json["well"], true);
+    EXPECT_EQ(json["pid"], 17);
+    EXPECT_EQ(json["lateness_max_us"], 45.0);
+}
+
+TEST(HealthOf, WhatStopsSomethingIsNamed) {
+    auto s = state();
+    s["alarms"].push_back({{"source", "axis y"},
+                           {"name", "drive_fault"},
+                           {"english", "The drive reports a fault"},
+                           {"reaction", "stop axis"},
+                           {"standing", false}});
+    const auto h = health_of(hello(), s);
+    EXPECT_THAT(h.unwell, ElementsAre("axis y, drive_fault (waits for a reset): The drive reports a fault"));
+    EXPECT_EQ(health_json(h)["alarms"].size(), 1u) << "warnings are not among them";
+}
+
+TEST(HealthOf, EachWayToBeUnwellHasItsWord) {
+    auto s = state();
+    s["emergency_stop"] = true;
+    EXPECT_THAT(health_of(hello(), s).unwell, ElementsAre("the emergency stop is pressed"));
+    s = state();
+    s["programs"][0]["state"] = "fault";
+    EXPECT_THAT(health_of(hello(), s).unwell, ElementsAre("program cell is in fault"));
+    s = state();
+    s["bus"]["phase"] = "recovering";
+    EXPECT_THAT(health_of(hello(), s).unwell, ElementsAre("the bus is recovering"));
+    s = state();
+    s["phase"] = "stopping";
+    EXPECT_THAT(health_of(hello(), s).unwell, ElementsAre("it is stopping"));
+    auto h = hello();
+    h["cycling"] = false, h["progress"] = "task 'main' of program 'cell' does not return";
+    EXPECT_THAT(health_of(h, state()).unwell, ElementsAre("it does not cycle: task 'main' of program 'cell' does not return"));
+    EXPECT_THAT(health_of(hello(), Json{}).unwell, ElementsAre("it does not cycle"));
+}
+
+// Whoever answers with something else is not well, and nothing is thrown.
+TEST(HealthOf, AnswersOfAnyTypeAreTaken) {
+    for (const char* text :
+         {"null", "[]", "7", "\"x\"", R"({"phase":7,"mode":[],"bus":3,"axes":{"a":1},"alarms":"x","programs":[1,null],"statistics":[]})",
+          R"({"alarms":[1,{"reaction":3}],"axes":[null],"emergency_stop":"yes"})"}) {
+        const auto odd = Json::parse(text);
+        EXPECT_FALSE(health_of(odd, odd).well()) << text;
+        EXPECT_FALSE(health_of(hello(), odd).well()) << text;
+    }
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
