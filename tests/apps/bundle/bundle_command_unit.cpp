@@ -30,7 +30,8 @@ std::string machine_text(const std::string& velocity = "300 mm/s") {
            "    limits: { velocity: " +
            velocity +
            ", acceleration: 2000 mm/s2, jerk: 50000 mm/s3 }\n    following_error: { window: 5 mm }\n    homing: { kind: set_here }\n"
-           "  m: { unit: mm, gearing: { counts_per_revolution: 1000, feed: 10 mm }, limits: { velocity: 100 mm/s, acceleration: 100 mm/s2, jerk: none } }\n"
+           "  m: { unit: mm, gearing: { counts_per_revolution: 1000, feed: 10 mm }, limits: { velocity: 100 mm/s, acceleration: 100 mm/s2, "
+           "jerk: none } }\n"
            "cams:\n  cut: { master: m, slave: x, file: ../tables/cut.csv }\n"
            "views:\n  main:\n    title: Press\n    rows:\n      - - { image: plan.svg }\n";
 }
@@ -42,8 +43,10 @@ struct BundleCommand : ::testing::Test {
         write_machine();
         folder.write("tables/cut.csv", "master [mm], slave [mm]\n0, 0\n10, 5\n20, 0\n");
         fs::copy_file(source / "config/machines/demo-cell.svg", folder.path() / "cell/plan.svg");
-        // A drive file of its own, that takes its objects and alarms from the installed ones.
+        // A drive file of its own, with the two that it takes its objects and alarms from.
         fs::copy_file(source / "config/drives/sv33-e.yaml", folder.path() / "drives/own_drive.yaml");
+        for (const char* name : {"sv33-e.objects.yaml", "sv33-e.alarms.yaml"})
+            fs::copy_file(source / "config/drives" / name, folder.path() / "drives" / name);
     }
     void write_machine(const std::string& velocity = "300 mm/s") const { folder.write("cell/press.yaml", machine_text(velocity)); }
     [[nodiscard]] std::string path(const std::string& name) const { return (folder.path() / name).string(); }
@@ -81,7 +84,7 @@ TEST_F(BundleCommand, WhatCheckRefusesIsNotPacked) {
     EXPECT_EQ(made.code, exit_bad_file);
     const auto checked = in_process({"check", path("cell/press.yaml")});
     EXPECT_EQ(made.err, checked.err) << "in the words of check";
-    EXPECT_THAT(made.err, HasSubstr("press.yaml:14:"));
+    EXPECT_THAT(made.err, HasSubstr("press.yaml:13:25: `300 m` for `axes.x.limits.velocity`"));
     EXPECT_FALSE(fs::exists(path("1.0.twb")));
 }
 
@@ -164,8 +167,8 @@ TEST_F(BundleCommand, KeysAndSignaturesAreThoseOfOpenssl) {
     const auto part = [&](const char* name) { return "tar -xOf " + path("1.0.twb") + " " + name + " > " + path(name); };
     ASSERT_EQ(std::system(part("manifest.json").c_str()), 0);
     ASSERT_EQ(std::system(part("manifest.sig").c_str()), 0);
-    const auto verify = "openssl pkeyutl -verify -rawin -pubin -inkey " + path("keys/theirs.pub") + " -in " + path("manifest.json") + " -sigfile " +
-                        path("manifest.sig") + " > /dev/null 2>&1";
+    const auto verify = "openssl pkeyutl -verify -rawin -pubin -inkey " + path("keys/theirs.pub") + " -in " + path("manifest.json") +
+                        " -sigfile " + path("manifest.sig") + " > /dev/null 2>&1";
     EXPECT_EQ(std::system(verify.c_str()), 0);
     folder.write("manifest.json", text_of_file(path("manifest.json")) + " ");
     EXPECT_NE(std::system(verify.c_str()), 0);

@@ -34,14 +34,15 @@ struct BundleMachine : ::testing::Test {
 
     /// One axis, and a program that counts scans; `interface` is where the bus is.
     void write_machine(const std::string& interface, int program) const {
-        folder.write("cell.yaml", "version: 1\nname: cell\ncycle: 1 ms\nstart_mode: automatic\nbus:\n  interface: " + interface +
-                                      "\n  slaves:\n    - { name: x_drive, profile: sv33-e }\naxes:\n  x:\n    slave: x_drive\n    unit: mm\n"
-                                      "    gearing: { counts_per_revolution: 131072, feed: 10 mm }\n"
-                                      "    limits: { velocity: 300 mm/s, acceleration: 2000 mm/s2, jerk: 50000 mm/s3 }\n"
-                                      "    following_error: { window: 5 mm }\n    homing: { kind: set_here }\n"
-                                      "programs:\n  count: { library: counting.so, autostart: true }\n"
-                                      "simulation: { supervision: relaxed }\nhmi: { socket: '" +
-                                      path("cell.sock") + "', lcm: { enabled: false } }\n");
+        folder.write("cell.yaml",
+                     "version: 1\nname: cell\ncycle: 1 ms\nstart_mode: automatic\nbus:\n  interface: " + interface +
+                         "\n  slaves:\n    - { name: x_drive, profile: sv33-e }\naxes:\n  x:\n    slave: x_drive\n    unit: mm\n"
+                         "    gearing: { counts_per_revolution: 131072, feed: 10 mm }\n"
+                         "    limits: { velocity: 300 mm/s, acceleration: 2000 mm/s2, jerk: 50000 mm/s3 }\n"
+                         "    following_error: { window: 5 mm }\n    homing: { kind: set_here }\n"
+                         "programs:\n  count: { library: counting.so, autostart: true }\n"
+                         "simulation: { supervision: relaxed }\nhmi: { socket: '" +
+                         path("cell.sock") + "', lcm: { enabled: false } }\n");
         fs::copy_file(std::string(TAKTWERK_BINARY_DIR) + "/tests/counting_program_" + std::to_string(program) + ".so", path("counting.so"),
                       fs::copy_options::overwrite_existing);
     }
@@ -84,10 +85,10 @@ struct BundleMachine : ::testing::Test {
 };
 
 TEST_F(BundleMachine, WhatItKeepsTravelsByNameFromVersionToVersionAndBack) {
-    const std::vector<std::string> a_second{"--virtual-time", "--duration", "1s", "--retain", path("kept")};
+    const std::vector<std::string> two_seconds{"--virtual-time", "--duration", "2s", "--retain", path("kept")};
     write_machine("simulated", 1);
     bring("1.0");
-    auto ran = run(a_second);
+    auto ran = run(two_seconds);
     ASSERT_EQ(ran.first, exit_ok) << ran.second;
     EXPECT_THAT(ran.second, HasSubstr("cell 1.0, made at "));
     const auto first = kept("count.pieces");
@@ -95,7 +96,7 @@ TEST_F(BundleMachine, WhatItKeepsTravelsByNameFromVersionToVersionAndBack) {
 
     write_machine("simulated", 2);
     bring("2.0");
-    ran = run(a_second);
+    ran = run(two_seconds);
     ASSERT_EQ(ran.first, exit_ok) << ran.second;
     const auto second = kept("count.pieces");
     EXPECT_GE(second, 2 * first - 1) << "as many again: it went on where it had been";
@@ -103,7 +104,7 @@ TEST_F(BundleMachine, WhatItKeepsTravelsByNameFromVersionToVersionAndBack) {
     EXPECT_EQ(scrap, second - first) << "the new one began with its first value";
 
     ASSERT_EQ(bundle({"rollback", "cell"}).first, exit_ok);
-    ran = run(a_second);
+    ran = run(two_seconds);
     ASSERT_EQ(ran.first, exit_ok) << ran.second;
     EXPECT_THAT(ran.second, HasSubstr("cell 1.0, made at "));
     EXPECT_GT(kept("count.pieces"), second);
@@ -113,7 +114,7 @@ TEST_F(BundleMachine, WhatItKeepsTravelsByNameFromVersionToVersionAndBack) {
 TEST_F(BundleMachine, AVersionThatDoesNotStartIsLeftAfterThreeStarts) {
     write_machine("simulated", 1);
     bring("1.0");
-    ASSERT_EQ(run({"--virtual-time", "--duration", "1s"}).first, exit_ok);
+    ASSERT_EQ(run({"--virtual-time", "--duration", "2s"}).first, exit_ok);
     write_machine("nosuchport0", 1);
     bring("2.0");
     for (int i = 0; i < 3; ++i) {
@@ -121,12 +122,13 @@ TEST_F(BundleMachine, AVersionThatDoesNotStartIsLeftAfterThreeStarts) {
         ASSERT_EQ(failed.first, exit_bus) << failed.second;
     }
     EXPECT_THAT(bundle({"list"}).second, HasSubstr("active, 3 starts failed"));
-    const auto back = run({"--duration", "500ms"});
+    const auto back = run({"--duration", "4s"});
     EXPECT_EQ(back.first, exit_ok) << back.second;
-    EXPECT_THAT(back.second, AllOf(HasSubstr("warning: cell: version 2.0 is left and 1.0 is active again: 3 starts in a row did not reach operation"),
-                                   HasSubstr("BUNDLE"), HasSubstr("cell 1.0, made at ")));
+    EXPECT_THAT(back.second,
+                AllOf(HasSubstr("warning: cell: version 2.0 is left and 1.0 is active again: 3 starts in a row did not reach operation"),
+                      HasSubstr("BUNDLE"), HasSubstr("cell 1.0, made at ")));
     EXPECT_THAT(text_of_file(path("root/bundles/cell/audit.log")), HasSubstr("\"did\":\"fall back\",\"from\":\"2.0\",\"to\":\"1.0\""));
-    EXPECT_THAT(run({"--virtual-time", "--duration", "1s"}).second, Not(HasSubstr("BUNDLE"))) << "said once";
+    EXPECT_THAT(run({"--virtual-time", "--duration", "2s"}).second, Not(HasSubstr("BUNDLE"))) << "said once";
 }
 
 TEST_F(BundleMachine, IsNotChangedUnderPower) {
@@ -162,11 +164,21 @@ TEST_F(BundleMachine, IsNotChangedUnderPower) {
     EXPECT_EQ(machine.wait(patience), exit_ok) << machine.text();
 }
 
-TEST_F(BundleMachine, ThePieceOfASlowStopIsNoFailedStart) {
+TEST_F(BundleMachine, AStartThatAPersonEndsIsNoFailedStart) {
     write_machine("simulated", 1);
     bring("1.0");
-    for (int i = 0; i < 4; ++i) ASSERT_EQ(run({"--duration", "300ms", "--quiet"}).first, exit_ok);
-    EXPECT_THAT(bundle({"list"}).second, HasSubstr("active, has worked"));
+    write_machine("simulated", 2);
+    bring("2.0");
+    auto words = run_words({});
+    words.insert(words.begin(), taktwerk);
+    for (int i = 0; i < 4; ++i) {
+        Child machine(words);
+        ASSERT_TRUE(machine.says("INIT -> PREOP", patience)) << machine.text();
+        machine.signal(SIGINT);
+        ASSERT_EQ(machine.wait(patience), exit_ok) << machine.text();
+        ASSERT_THAT(machine.text(), Not(HasSubstr("operational\n"))) << "it was ended before";
+    }
+    EXPECT_THAT(bundle({"list"}).second, HasSubstr("active, not started yet"));
 }
 
 }  // namespace

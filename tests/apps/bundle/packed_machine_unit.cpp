@@ -43,8 +43,8 @@ TEST_F(PackedMachineTest, WordsThatGoUpPutTheMachineDeeper) {
     const auto packed =
         pack(machine, {{Kind::program, "../../build/feeder.so", a}, {Kind::cam, "../tables/cut.csv", b}, {Kind::drive, "own.yaml", b}});
     ASSERT_TRUE(packed) << packed.error().text();
-    EXPECT_THAT(places(*packed), ElementsAre("machine above/machine/cell.yaml", "cam above/tables/cut.csv", "program build/feeder.so",
-                                             "drive above/drives/own.yaml"))
+    EXPECT_THAT(places(*packed), ElementsAre("machine above/machine/cell.yaml", "drive above/drives/own.yaml", "cam above/tables/cut.csv",
+                                             "program build/feeder.so"))
         << "drives are looked up in ../drives of the machine's folder";
 }
 
