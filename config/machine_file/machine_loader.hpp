@@ -3,7 +3,7 @@
 //
 //   auto loaded = config::load_machine("config/machines/demo.yaml", {.simulate = true});
 //   if (auto* errors = std::get_if<std::vector<Error>>(&loaded)) ...     // all of them, each with file:line:col
-//   auto& [machine, hmi, warnings] = std::get<config::LoadedMachine>(loaded);
+//   auto& [machine, hmi, warnings, files] = std::get<config::LoadedMachine>(loaded);
 //
 // Not real-time. Reads the machine file, its drive files and their alarm files; reads no environment.
 

@@ -163,7 +163,7 @@ TEST(HostileFile, WithControlCharactersIsRefused) {
 // --- good files ---------------------------------------------------------------------------------------------------------------
 
 TEST(MachineLoader, TheDemoIsWhatItsCommentsSay) {
-    const auto [machine, hmi, warnings] = must_load(source + "/config/machines/demo.yaml");
+    const auto [machine, hmi, warnings, files] = must_load(source + "/config/machines/demo.yaml");
 
     EXPECT_TRUE(warnings.empty()) << one_a_line(warnings);
     EXPECT_EQ(machine.cycle, 1ms);
