@@ -52,7 +52,10 @@ int install(const StoreOptions& options) {
     const auto trust = options.places.trust();
     if (!trust) return fail_bundle(trust.error());
     const auto store = options.places.store();
-    const auto installed = store.install(options.file, *trust, this_host());
+    const auto bundle = BundleFile::open(options.file, *trust);  // wherever it is: with the rights of whoever asked
+    if (!bundle) return fail_bundle(bundle.error());
+    if (const auto ok = act_as_owner(store.root()); !ok) return fail_bundle(ok.error());
+    const auto installed = store.install(*bundle, options.file, this_host());
     if (!installed) return fail_bundle(installed.error());
     const auto& manifest = installed->bundle.manifest;
     say_open_door(*trust, options.places);
@@ -84,7 +87,9 @@ int activate_version(const StoreOptions& options) {
     if (const auto known = store.find(options.machine, options.version); !known) return fail_bundle(known.error());
     const auto runs = idle(store, options.machine);
     if (!runs) return fail_bundle(runs.error());
-    const auto switched = activate(store, options.machine, options.version, *trust, this_host(), deed_now());
+    const auto deed = deed_now();
+    if (const auto ok = act_as_owner(store.root()); !ok) return fail_bundle(ok.error());
+    const auto switched = activate(store, options.machine, options.version, *trust, this_host(), deed);
     if (!switched) return fail_bundle(switched.error());
     say_open_door(*trust, options.places);
     return tell(options.machine, *switched, *runs);
@@ -94,13 +99,17 @@ int rollback(const StoreOptions& options) {
     const auto store = options.places.store();
     const auto runs = idle(store, options.machine);
     if (!runs) return fail_bundle(runs.error());
-    const auto switched = roll_back(store, options.machine, this_host(), deed_now());
+    const auto deed = deed_now();
+    if (const auto ok = act_as_owner(store.root()); !ok) return fail_bundle(ok.error());
+    const auto switched = roll_back(store, options.machine, this_host(), deed);
     if (!switched) return fail_bundle(switched.error());
     return tell(options.machine, *switched, *runs);
 }
 
 int remove_version(const StoreOptions& options) {
-    if (const auto removed = options.places.store().remove(options.machine, options.version); !removed) return fail_bundle(removed.error());
+    const auto store = options.places.store();
+    if (const auto ok = act_as_owner(store.root()); !ok) return fail_bundle(ok.error());
+    if (const auto removed = store.remove(options.machine, options.version); !removed) return fail_bundle(removed.error());
     fmt::print("{} {} is gone\n", options.machine, options.version);
     return exit_ok;
 }

@@ -66,35 +66,39 @@ Result<std::optional<UnpackedBundle>> BundleStore::same_there(const BundleFile& 
 }
 
 Result<BundleStore::Installed> BundleStore::install(const std::string& path, const Trust& trust, const Host& host) const {
-    auto bundle = BundleFile::open(path, trust);
+    const auto bundle = BundleFile::open(path, trust);
     if (!bundle) return bundle.error();
-    const auto& manifest = bundle->manifest();
+    return install(*bundle, path, host);
+}
+
+Result<BundleStore::Installed> BundleStore::install(const BundleFile& bundle, const std::string& path, const Host& host) const {
+    const auto& manifest = bundle.manifest();
     if (auto ok = fits(manifest, host, path); !ok) return ok.error();
     std::optional<AsideFolder> aside;
     {
         const auto locked = lock();
         if (!locked) return locked.error();
-        auto there = same_there(*bundle, path);
+        auto there = same_there(bundle, path);
         if (!there) return there.error();
-        if (*there) return Installed{std::move(**there), bundle->signer(), Installed::Was::there};
-        if (auto ok = room_for(*bundle, bundles()); !ok) return ok.error();
+        if (*there) return Installed{std::move(**there), bundle.signer(), Installed::Was::there};
+        if (auto ok = room_for(bundle, bundles()); !ok) return ok.error();
         auto made = AsideFolder::make(bundles());
         if (!made) return made.error();
         aside.emplace(std::move(made).value());
     }
     // Long work, and nobody waits for it: nothing sees this folder yet.
-    if (auto ok = bundle->unpack(aside->path()); !ok) return ok.error();
+    if (auto ok = bundle.unpack(aside->path()); !ok) return ok.error();
     const auto locked = lock();
     if (!locked) return locked.error();
-    auto there = same_there(*bundle, path);
+    auto there = same_there(bundle, path);
     if (!there) return there.error();
-    if (*there) return Installed{std::move(**there), bundle->signer(), Installed::Was::there};
+    if (*there) return Installed{std::move(**there), bundle.signer(), Installed::Was::there};
     const auto place = version_folder(manifest.name, manifest.version);
     if (auto ok = make_folders(place.parent_path()); !ok) return ok.error();
     if (auto ok = move_into_place(aside->path(), place); !ok) return ok.error();
     auto now = read_unpacked(place);
     if (!now) return now.error();
-    return Installed{std::move(now).value(), bundle->signer(), Installed::Was::new_here};
+    return Installed{std::move(now).value(), bundle.signer(), Installed::Was::new_here};
 }
 
 Result<UnpackedBundle> BundleStore::find(const std::string& machine, const std::string& version) const {

@@ -33,6 +33,8 @@ public:
     /// Nothing of a bundle that is refused is left. Errors: those of BundleFile::open(), fits() and unpack(); bundle.other (another bundle of this name and
     /// version is installed), bundle.no_room, bundle.folder.
     [[nodiscard]] Result<Installed> install(const std::string& path, const Trust& trust, const Host& host) const;
+    /// One that was opened already, as `path`.
+    [[nodiscard]] Result<Installed> install(const BundleFile& bundle, const std::string& path, const Host& host) const;
     /// Errors: bundle.unknown (names those that are there), those of read_unpacked().
     [[nodiscard]] Result<UnpackedBundle> find(const std::string& machine, const std::string& version) const;
     /// Neither the active version nor the one to go back to. Errors: bundle.unknown, bundle.in_use, bundle.folder.
@@ -43,6 +45,7 @@ public:
     /// In the order of their numbers.
     [[nodiscard]] std::vector<std::string> versions(const std::string& machine) const;
 
+    [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
     [[nodiscard]] std::filesystem::path bundles() const { return root_ / "bundles"; }
     [[nodiscard]] std::filesystem::path folder(const std::string& machine) const { return bundles() / machine; }
     [[nodiscard]] std::filesystem::path version_folder(const std::string& machine, const std::string& version) const {

@@ -1,6 +1,7 @@
 #include "runtime/bundle/durable.hpp"
 
 #include <fcntl.h>
+#include <grp.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -39,14 +40,6 @@ Error no_folder(const fs::path& path, int number) {
 
 OwnedFd open_folder(const fs::path& folder) { return OwnedFd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW)); }
 
-/// Whose the folder is that something stands in: what root makes there becomes that one's.
-void belong_as_folder(const fs::path& path) {
-    struct stat above {};
-    if (::geteuid() != 0 || ::lstat(path.parent_path().c_str(), &above) != 0 || (above.st_uid == 0 && above.st_gid == 0)) return;
-    // Where it fails it stays root's, which the runtime says when it cannot write there.
-    [[maybe_unused]] const int done = ::lchown(path.c_str(), above.st_uid, above.st_gid);
-}
-
 Result<void> write_all(int fd, std::string_view text, const fs::path& path) {
     while (!text.empty()) {
         const auto done = ::write(fd, text.data(), text.size());
@@ -69,6 +62,16 @@ OwnedFd& OwnedFd::operator=(OwnedFd&& other) noexcept {
 }
 OwnedFd::~OwnedFd() {
     if (fd_ >= 0) ::close(fd_);
+}
+
+Result<void> act_as_owner(const fs::path& folder) {
+    struct stat info {};
+    if (::geteuid() != 0 || ::stat(folder.c_str(), &info) != 0 || info.st_uid == 0) return {};
+    // Groups first: afterwards there is no right to change them.
+    if (::setgroups(0, nullptr) != 0 || ::setresgid(info.st_gid, info.st_gid, info.st_gid) != 0 ||
+        ::setresuid(info.st_uid, info.st_uid, info.st_uid) != 0)
+        return no_folder(folder, errno);
+    return {};
 }
 
 Result<OwnedFd> lock_folder(const fs::path& folder) {
@@ -115,14 +118,12 @@ Result<void> make_folders(const fs::path& folder) {
     if (folder.has_parent_path() && folder.parent_path() != folder)
         if (auto ok = make_folders(folder.parent_path()); !ok) return ok;
     if (::mkdir(folder.c_str(), 0755) != 0 && errno != EEXIST) return no_folder(folder, errno);
-    belong_as_folder(folder);
     return sync_folder(folder.parent_path());
 }
 
 Result<void> write_new_file(const fs::path& path, std::string_view text) {
     const OwnedFd fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0644));
     if (!fd) return not_written(path, errno);
-    belong_as_folder(path);
     return write_all(fd.get(), text, path);
 }
 
@@ -135,16 +136,13 @@ Result<void> replace_file(const fs::path& path, std::string_view text) {
 }
 
 Result<void> append_line(const fs::path& path, std::string_view line) {
-    const bool is_new = ::access(path.c_str(), F_OK) != 0;
     const OwnedFd fd(::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
     if (!fd) return not_written(path, errno);
-    if (is_new) belong_as_folder(path);
     return write_all(fd.get(), std::string(line) + "\n", path);
 }
 
 Result<void> make_link(const fs::path& link, const std::string& to) {
     if (::symlink(to.c_str(), link.c_str()) != 0) return not_written(link, errno);
-    belong_as_folder(link);
     return {};
 }
 
@@ -189,7 +187,6 @@ Result<AsideFolder> AsideFolder::make(const fs::path& parent) {
     if (::mkdtemp(pattern.data()) == nullptr) return not_written(parent, errno);
     auto held = hold_folder(pattern);
     if (!held || ::fchmod(held.get(), 0755) != 0) return not_written(pattern, errno);
-    belong_as_folder(pattern);
     return AsideFolder(pattern, std::move(held));
 }
 

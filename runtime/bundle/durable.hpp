@@ -1,6 +1,5 @@
 #pragma once
-// Files and folders whose changes are on the disk before anybody builds on them, and whose places change by one rename each. What root makes below a folder
-// of somebody else's becomes that one's. Not real-time.
+// Files and folders whose changes are on the disk before anybody builds on them, and whose places change by one rename each. Not real-time.
 
 #include <filesystem>
 #include <optional>
@@ -26,6 +25,10 @@ public:
 private:
     int fd_;
 };
+
+/// Of root: this process becomes the owner of the folder, for good, where that is another one: what it makes there is that one's, and whoever that is cannot
+/// lead root elsewhere by a link. Nothing where there is no such folder. One thread so far. Errors: bundle.folder.
+[[nodiscard]] Result<void> act_as_owner(const std::filesystem::path& folder);
 
 /// Nobody else may change these folders while it lives; it waits for whoever does. It goes with the process, however that ends.
 /// Errors: bundle.folder.

@@ -211,7 +211,8 @@ Result<Manifest> manifest_of(std::string_view text, const std::string& subject) 
     if (paths.find(out.machine_file) == paths.end())
         return wrong(fmt::format("the machine file '{}' is not among its files", out.machine_file));
     for (const auto& program : out.programs)
-        if (paths.find(program.path) == paths.end()) return wrong(fmt::format("'{}' of program '{}' is not among its files", program.path, program.name));
+        if (paths.find(program.path) == paths.end())
+            return wrong(fmt::format("'{}' of program '{}' is not among its files", program.path, program.name));
     // A file that is also a folder of another one could never be written.
     for (const auto& path : paths)
         for (auto slash = path.find('/'); slash != std::string::npos; slash = path.find('/', slash + 1))

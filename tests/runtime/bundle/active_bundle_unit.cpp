@@ -6,6 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +26,6 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
 
 struct Bundles : ::testing::Test {
     TemporaryFolder folder;
@@ -276,6 +282,74 @@ TEST_F(Bundles, AFolderThatNobodyMayWriteIsSaid) {
     fs::permissions(folder.path() / "root", fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_EQ(store.install(file("1.0"), nobody(), small_host()).error().code, "bundle.folder");
     fs::permissions(folder.path() / "root", fs::perms::owner_all);
+}
+
+/// `work` in a process of its own; whether it said yes.
+bool in_a_child(const std::function<bool()>& work) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(work() ? 0 : 1);
+    int status = 0;
+    return ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/// No file can have a byte: what a full disk is like for whoever writes. Folders and links can be made.
+void fill_the_disk() {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit none{0, 0};
+    ::setrlimit(RLIMIT_FSIZE, &none);
+}
+
+TEST_F(Bundles, AFullDiskLeavesNothingOfAnInstall) {
+    install("1.0");
+    activate("1.0");
+    const auto before = everything();
+    const auto next = file("1.1");
+    EXPECT_TRUE(in_a_child([&] {
+        fill_the_disk();
+        const auto installed = store.install(next, nobody(), small_host());
+        return !installed && installed.error().code == "bundle.not_written";
+    }));
+    EXPECT_EQ(everything(), before);
+}
+
+TEST_F(Bundles, AFullDiskDoesNotHoldUpTheWayBack) {
+    install("1.0"), install("1.1");
+    activate("1.0"), activate("1.1");
+    EXPECT_TRUE(in_a_child([&] {
+        fill_the_disk();
+        return runtime::activate(store, "cell", "1.0", nobody(), small_host(), joe).error().code == "bundle.not_written";
+    })) << "what is not written down is not activated";
+    EXPECT_EQ(active(), "1.1");
+    EXPECT_TRUE(in_a_child([&] {
+        fill_the_disk();
+        const auto switched = runtime::roll_back(store, "cell", small_host(), joe);
+        return switched && switched->remarks.size() == 1;  // the audit is the poorer by a line, and that is said
+    }));
+    EXPECT_EQ(active(), "1.0");
+    EXPECT_TRUE(in_a_child([&] {
+        fill_the_disk();
+        const auto begun = begin_start(store, "cell", 3, small_host(), joe);
+        return begun && begun->bundle.manifest.version == "1.0" && begun->remarks.size() == 1;
+    })) << "and a machine starts";
+}
+
+TEST_F(Bundles, RootWorksAsTheOwnerOfTheFolder) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can become another";
+    constexpr uid_t somebody = 65534;
+    fs::permissions(folder.path(), fs::perms::all);
+    fs::create_directory(folder.path() / "root");
+    ASSERT_EQ(::chown((folder.path() / "root").c_str(), somebody, somebody), 0);
+    const auto bundle = BundleFile::open(file("1.0"), nobody());
+    ASSERT_TRUE(bundle);
+    EXPECT_TRUE(in_a_child([&] {
+        return act_as_owner(store.root()).ok() && ::geteuid() == somebody && store.install(*bundle, "1.0.twb", small_host()).ok();
+    }));
+    ASSERT_EQ(store.versions("cell").size(), 1u);
+    for (const auto& entry : fs::recursive_directory_iterator(store.bundles())) {
+        struct stat info {};
+        ASSERT_EQ(::lstat(entry.path().c_str(), &info), 0);
+        EXPECT_EQ(info.st_uid, somebody) << entry.path();
+    }
 }
 
 }  // namespace

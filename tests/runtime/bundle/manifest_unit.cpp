@@ -97,7 +97,7 @@ TEST(Manifest, ItsFilesBelongTogether) {
 
 TEST(Manifest, WhatIsNoJsonIsRefused) {
     for (const auto& text : {std::string(), std::string("[]"), std::string("null"), text_of(whole()).substr(0, 100),
-                                   std::string(100'000, '['), std::string("{\"a\":{\"a\":{\"a\":{\"a\":{\"a\":{}}}}}}")})
+                             std::string(100'000, '['), std::string("{\"a\":{\"a\":{\"a\":{\"a\":{\"a\":{}}}}}}")})
         EXPECT_THAT(problem_of(text), HasSubstr("bundle.manifest")) << text.substr(0, 40);
 }
 

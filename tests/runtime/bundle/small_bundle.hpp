@@ -38,7 +38,8 @@ public:
     TemporaryFolder() {
         // In memory, where there is such a folder: what is synchronised again and again shall not wait for a disk.
         const std::filesystem::path memory = "/dev/shm";
-        auto name = ((std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) / "taktwerk_bundle_XXXXXX").string();
+        auto name =
+            ((std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) / "taktwerk_bundle_XXXXXX").string();
         path_ = ::mkdtemp(name.data());
     }
     ~TemporaryFolder() {
