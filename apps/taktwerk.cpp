@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
     add_measure(app, action);
     add_alarms(app, action);
     add_retain(app, action);
+    add_bundle(app, action);
     add_bus(app, action);
     add_drive(app, action);
     add_plot(app, action);

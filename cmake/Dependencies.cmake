@@ -43,7 +43,7 @@ add_library(boost_imported INTERFACE)
 target_include_directories(boost_imported SYSTEM INTERFACE "${BOOST_BEAST_INCLUDE_DIR}")
 target_link_libraries(boost_imported INTERFACE Threads::Threads)
 
-# libsodium: a pkg-config file only. Argon2id and random tokens for the page's users.
+# libsodium: a pkg-config file only. Argon2id and random tokens for the page's users; SHA-256 and Ed25519 for bundles.
 find_path(SODIUM_INCLUDE_DIR sodium.h REQUIRED)  # libsodium-dev
 find_library(SODIUM_LIBRARY sodium REQUIRED)
 add_library(sodium_imported INTERFACE)

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/machine/checked_machine.hpp"
 #include "apps/machine/group_summary.hpp"
-#include "apps/machine/load.hpp"
 #include "apps/machine/master_gone.hpp"
 #include "apps/machine/modbus_asked.hpp"
 #include "apps/machine/modbus_offer.hpp"
@@ -21,14 +20,11 @@
 #include "axes/axis/error_reaction.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/parameter_text.hpp"
-#include "core/installed_memory.hpp"
 #include "hmi_bridge/views/view_check.hpp"
 #include "runtime/check/drive_hazards.hpp"
 #include "runtime/check/machine_remarks.hpp"
 #include "runtime/check/recording_memory.hpp"
 #include "runtime/machine/machine.hpp"
-#include "runtime/tasks/borrowed_rights.hpp"
-#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -426,40 +422,25 @@ int fail(const CheckOptions& options, const std::vector<Error>& errors) {
 }
 
 int check(const CheckOptions& options) {
-    // It loads what it checks, and what is loaded runs: with the rights of whoever asked, and no others.
-    if (auto ok = runtime::give_back_rights(); !ok) return fail(options, {ok.error()});
-    auto result = read_machine(options.file, false);
+    auto result = check_machine(options.file);
     if (const auto* errors = std::get_if<std::vector<Error>>(&result)) return fail(options, *errors);
-    auto& loaded = std::get<LoadedFile>(result);
-    const MachineConfig config = loaded.machine;
-    const auto& served = loaded.hmi.modbus_server;
-
-    // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
-    loaded.machine.retain.directory.clear();
-    runtime::World world{config, Instant{}};
-    auto built = runtime::Machine::build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
-    if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
-    const auto& layout = std::get<0>(built)->layout();
-    // What programs have is known only now.
-    auto of_programs = served ? hmi::check(*served, hmi::names_of(layout)) : std::vector<Error>{};
-    const auto of_views = hmi::check(loaded.hmi.views, hmi::view_values_of(config, layout));
-    of_programs.insert(of_programs.end(), of_views.begin(), of_views.end());
-    if (!of_programs.empty()) return fail(options, of_programs);
-    auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
-    if (auto large = runtime::recording_remark(config.recording.depth, std::get<0>(built)->signals().bytes(), installed_memory()))
-        remarks.push_back(std::move(*large));
+    const auto& checked = std::get<CheckedMachine>(result);
+    const MachineConfig& config = checked.config;
+    const auto& served = checked.hmi.modbus_server;
+    const auto& layout = checked.machine->layout();
+    const auto& remarks = checked.remarks;
 
     if (options.json) {
-        auto summary = summary_json(config, layout, loaded.warnings, remarks);
-        const auto& ring = std::get<0>(built)->signals();
+        auto summary = summary_json(config, layout, checked.warnings, remarks);
+        const auto& ring = checked.machine->signals();
         summary["recording"] = Json{{"signals", ring.signals().size()}, {"bytes", ring.bytes()}, {"bytes_a_cycle", ring.words() * 8}};
         if (!config.modbus.empty()) summary["modbus_tcp"] = modbus_asked_json(config.modbus);
-        if (!loaded.hmi.views.empty()) summary["views"] = views_json(loaded.hmi.views);
+        if (!checked.hmi.views.empty()) summary["views"] = views_json(checked.hmi.views);
         if (served) summary["modbus_server"] = modbus_offer_json(*served, hmi::names_of(layout));
         fmt::print("{}\n", summary.dump(2));
         return exit_ok;
     }
-    for (const auto& warning : loaded.warnings) print_warning(warning);
+    for (const auto& warning : checked.warnings) print_warning(warning);
     fmt::print("{}: machine '{}', cycle {:g} ms, {}, {} {}, {}: no problem found\n", options.file, config.name,
                to_seconds(config.cycle) * 1e3, count_text(config.bus.slaves.size(), "slave"), config.axes.size(),
                config.axes.size() == 1 ? "axis" : "axes", count_text(config.programs.size(), "program"));
@@ -471,14 +452,14 @@ int check(const CheckOptions& options) {
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);
     print_programs(config, layout);
-    print_recording(config, std::get<0>(built)->signals());
+    print_recording(config, checked.machine->signals());
     if (config.emergency_stop.input.empty())
         fmt::print("\nNo emergency stop input: the runtime does not hear when the safety circuit opens.\n");
     else
         fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
                    config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
     fmt::print("{}", modbus_asked_text(config.modbus));
-    print_views(loaded.hmi.views);
+    print_views(checked.hmi.views);
     if (served) fmt::print("\n{}", modbus_offer_text(*served, hmi::names_of(layout)));
     print_hazards(config);
     print_assumptions(config);

@@ -26,9 +26,7 @@ std::vector<std::string> program_path() {
     return folders;
 }
 
-namespace {
-
-config::LoadOptions options_for(bool simulate) {
+config::LoadOptions load_options(bool simulate) {
     config::LoadOptions options;
     options.simulate = simulate;
     options.program_path = program_path();
@@ -42,17 +40,15 @@ config::LoadOptions options_for(bool simulate) {
     return options;
 }
 
-}  // namespace
+config::LoadResult read_machine(const std::string& file, bool simulate) { return config::load_machine(file, load_options(simulate)); }
 
-config::LoadResult read_machine(const std::string& file, bool simulate) { return config::load_machine(file, options_for(simulate)); }
-
-std::vector<std::string> drive_folders(const std::string& machine_file) { return config::drive_folders(machine_file, options_for(false)); }
+std::vector<std::string> drive_folders(const std::string& machine_file) { return config::drive_folders(machine_file, load_options(false)); }
 std::vector<std::string> device_folders(const std::string& machine_file) {
-    return config::device_folders(machine_file, options_for(false));
+    return config::device_folders(machine_file, load_options(false));
 }
 
 config::LoadResult read_machine_without_programs(const std::string& file, bool simulate) {
-    auto options = options_for(simulate);
+    auto options = load_options(simulate);
     options.resolve_programs = false;
     return config::load_machine(file, options);
 }
@@ -72,6 +68,9 @@ std::optional<LoadedFile> printed(config::LoadResult result) {
 }  // namespace
 
 std::optional<LoadedFile> load(const std::string& file, bool simulate) { return printed(read_machine(file, simulate)); }
+std::optional<LoadedFile> load(const std::string& file, const config::LoadOptions& options) {
+    return printed(config::load_machine(file, options));
+}
 std::optional<LoadedFile> load_without_programs(const std::string& file, bool simulate) {
     return printed(read_machine_without_programs(file, simulate));
 }

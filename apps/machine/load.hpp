@@ -15,7 +15,9 @@ using LoadedFile = config::LoadedMachine;
 /// of $TAKTWERK_PROGRAM_PATH (with colons between).
 [[nodiscard]] std::vector<std::string> program_path();
 
-/// Silent. `simulate`: the bus and the drives are simulated whatever the file says.
+/// How a file is loaded here. `simulate`: the bus and the drives are simulated whatever the file says.
+[[nodiscard]] config::LoadOptions load_options(bool simulate);
+/// Silent.
 [[nodiscard]] config::LoadResult read_machine(const std::string& file, bool simulate);
 /// The same for whoever looks at the bus alone: programs need not be built.
 [[nodiscard]] config::LoadResult read_machine_without_programs(const std::string& file, bool simulate);
@@ -27,6 +29,7 @@ using LoadedFile = config::LoadedMachine;
 
 /// Prints warnings, or every problem (then nothing is returned).
 [[nodiscard]] std::optional<LoadedFile> load(const std::string& file, bool simulate);
+[[nodiscard]] std::optional<LoadedFile> load(const std::string& file, const config::LoadOptions& options);
 [[nodiscard]] std::optional<LoadedFile> load_without_programs(const std::string& file, bool simulate);
 
 }  // namespace taktwerk::apps

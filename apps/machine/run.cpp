@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "apps/machine/about.hpp"
+#include "apps/machine/bundle_run.hpp"
 #include "apps/machine/crash_line.hpp"
 #include "apps/machine/file_thread.hpp"
 #include "apps/machine/history_file.hpp"
@@ -65,6 +66,9 @@ struct RunOptions {
     std::string file, trace, pcap, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
+    std::string bundle, root;
+    unsigned tries = usual_tries;
+    std::shared_ptr<BundleRun> from_bundle{};  ///< with --bundle, once it is chosen
 };
 
 /// A run that ends with something machine-wide still standing did not end well. What stands while the machine goes down does not
@@ -142,6 +146,20 @@ void say_kept(const MachineLog& log, Instant now, const Machine& machine, const 
     for (auto& line : lines_of(machine.retain_notes())) log.say(now, "retain", std::move(line));
 }
 
+/// Which bundle it is, and why it may be another than the one that was active.
+void say_bundle(const MachineLog& log, Instant now, const RunOptions& options) {
+    if (!options.from_bundle) return;
+    for (const auto& remark : options.from_bundle->start().remarks) log.say(now, "BUNDLE", remark.text());
+    if (!options.quiet) log.say(now, "bundle", options.from_bundle->title());
+}
+
+/// Once; a disk that takes nothing is not asked in every round.
+void note_bundle(const MachineLog& log, Instant now, BundleRun& bundle, bool& noted) {
+    if (noted || !bundle.reached()) return;
+    noted = true;
+    if (const auto written = bundle.work(); !written) log.say(now, "bundle", written.error().text());
+}
+
 std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines,
                                std::vector<modbus::tcp::Exchange*> exchanges) {
     auto built = Machine::build(std::move(config), transport, std::move(lines), std::move(exchanges));
@@ -173,6 +191,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     SystemClock wall;
     const auto wall_start = wall.now();
     MachineLog log{*machine, clock.now(), options.json};
+    say_bundle(log, clock.now(), options);
     say_kept(log, clock.now(), *machine, options);
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
@@ -184,6 +203,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
             [&](const AlarmFact& fact) { return machine->describe(fact); },
             [&](std::string_view text) { log.say(clock.now(), "history", std::string(text)); });
     int code = exit_ok;
+    bool bundle_noted = false;
     runner.after_cycle = [&](Instant now) {
         if (files.trace) (void)files.trace->drain().ok();  // an error comes again from finish()
         if (files.capture) (void)files.capture->drain().ok();
@@ -201,6 +221,10 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
             history->work(now);
         }
         judge(snapshot, code);
+        if (options.from_bundle) {
+            options.from_bundle->look(snapshot);
+            note_bundle(log, now, *options.from_bundle, bundle_noted);
+        }
         if (!options.quiet) log.step(now, snapshot);
         if (stop_requested()) machine->request_shutdown();
     };
@@ -292,6 +316,8 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
 
     if (!options.run_before.empty())
         for (auto* each : {&log, &kept}) each->say(start, "restart", options.run_before);
+    say_bundle(log, start, options);
+    say_bundle(kept, start, options);
     say_kept(log, start, machine, options);
     say_kept(kept, start, machine, options);
 
@@ -382,6 +408,17 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
             },
             [](const Error&) {}));
     }
+    if (const auto bundle = options.from_bundle)
+        writers.push_back(std::make_unique<FileThread>(
+            [&log, &clock, bundle, noted = false]() mutable {
+                note_bundle(log, clock.now(), *bundle, noted);
+                return Result<void>{};
+            },
+            [bundle] {
+                (void)bundle->work().ok();  // what could not be written was said
+                return Result<void>{};
+            },
+            [](const Error&) {}));
     const auto files_written = [&] {
         auto worst = FileThread::End::complete;
         for (auto& writer : writers) worst = std::max(worst, writer->finish(file_patience));
@@ -447,6 +484,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         manager.alive(now, machine.pulse().cycles);
         if (stop_requested() || machine.shutdown_asked()) manager.stopping();
         judge((*bridge)->snapshot(), code);
+        if (options.from_bundle) options.from_bundle->look((*bridge)->snapshot());
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
         kept.step(now, (*bridge)->snapshot());
         if (const auto* snapshot = (*bridge)->snapshot(); files.evidence && snapshot != nullptr) files.evidence->look(*snapshot);
@@ -555,12 +593,33 @@ int run_marked(LoadedFile loaded, RunOptions options) {
     return code;
 }
 
+/// The file or the bundle, whichever was asked for.
+Result<void> choose(RunOptions& options, config::LoadOptions& loading) {
+    if (options.file.empty() == options.bundle.empty())
+        return Error{"usage.run", "run", options.file.empty() ? "nothing is named that shall run" : "a file and a bundle are named",
+                     "write `taktwerk run FILE` or `taktwerk run --bundle MACHINE`"};
+    if (options.bundle.empty()) return {};
+    auto begun = begin_start(BundleStore(bundle_root(options.root)), options.bundle, options.tries, this_host(), deed_now());
+    if (!begun) return begun.error();
+    options.from_bundle = std::make_shared<BundleRun>(std::move(begun).value());
+    const auto& start = options.from_bundle->start();
+    for (const auto& remark : start.remarks) print_warning(remark);
+    options.file = start.bundle.machine_file().string();
+    loading.state_dir = start.state.string();
+    return {};
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("run", "run a machine");
     auto options = std::make_shared<RunOptions>();
-    sub->add_option("FILE", options->file, "machine file")->required();
+    sub->add_option("FILE", options->file, "machine file");
+    sub->add_option("--bundle", options->bundle, "instead of a file: the active version of this machine (`taktwerk bundle`)");
+    sub->add_option("--root", options->root, "with --bundle: where bundles are; default: $STATE_DIRECTORY, else /var/lib/taktwerk");
+    sub->add_option("--tries", options->tries, "with --bundle: starts that may fail before the version before is taken again")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     sub->add_flag("--simulate", options->simulate, "simulated bus and drives, whatever the file says");
     sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");
     add_duration(*sub, "--duration", options->duration_s, "machine time, e.g. 60s; default: until stopped");
@@ -589,7 +648,12 @@ void add_run(CLI::App& app, Action& action) {
                                   "Leave out --virtual-time."});
                 return static_cast<int>(exit_usage);
             }
-            auto loaded = load(options->file, options->simulate || options->virtual_time);
+            auto loading = load_options(options->simulate || options->virtual_time);
+            if (const auto chosen = choose(*options, loading); !chosen) {
+                print_error(chosen.error());
+                return static_cast<int>(chosen.error().code == "usage.run" ? exit_usage : exit_bad_file);
+            }
+            auto loaded = load(options->file, loading);
             if (!loaded) return static_cast<int>(exit_bad_file);
             if (options->without_events) loaded->machine.simulation.events.clear();
             if (!options->retain.empty()) loaded->machine.retain.directory = options->retain;
@@ -601,7 +665,9 @@ void add_run(CLI::App& app, Action& action) {
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
-            return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_marked(std::move(*loaded), *options);
+            const int code = options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_marked(std::move(*loaded), *options);
+            if (options->from_bundle && code == exit_ok) options->from_bundle->ended_as_asked();
+            return code;
         };
     });
 }

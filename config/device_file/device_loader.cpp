@@ -252,6 +252,7 @@ std::variant<LoadedDevice, std::vector<Error>> load(const std::string& path, Doc
         reader.problem_in("name", "config.device", fmt::format("the file is called '{}', and the device in it '{}'", stem, file.name),
                           "call both the same: machines name the file");
     if (!reader.errors().empty()) return std::move(reader.errors());
+    device.files = {path};
     return device;
 }
 

@@ -34,6 +34,7 @@ struct LoadedDevice {
     std::vector<ecat::StartupSdo> startup;
     std::vector<DeviceChannel> channels;
     std::vector<axes::EncoderChannel> encoders{};  ///< positions that may be axes
+    std::vector<std::string> files{};              ///< path of what was read
 };
 
 /// All problems at once, each with file, line and column.

@@ -106,6 +106,7 @@ Document read_drive_document(const std::string& path, const std::vector<std::str
     if (file.empty())
         return problem(fmt::format("there is no drive file '{}' to base it on", base->text), "correct the name: `based_on: cia402`");
     auto found = read_document(file);
+    document.based_on = file;
     document.errors.insert(document.errors.end(), found.errors.begin(), found.errors.end());
     if (found.root.find(base_key) != nullptr)
         return problem(fmt::format("'{}' is based on another file itself", base->text), "name the file that all of them are based on");

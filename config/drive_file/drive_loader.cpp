@@ -74,13 +74,16 @@ std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path
             if (const auto there = std::filesystem::path(folder) / name; std::filesystem::exists(there)) return there.string();
         return here.string();
     };
-    if (!file.object_file.empty()) load_objects(beside(file.object_file), file, reader.errors());
+    std::vector<std::string> files{path};
+    if (!document.based_on.empty()) files.push_back(document.based_on);
+    if (!file.object_file.empty()) load_objects(files.emplace_back(beside(file.object_file)), file, reader.errors());
     const auto modules = in_every_slot(reader, file);
     const auto startup = resolve_startup(reader, path, file.startup, file.device);
-    if (!file.alarm_file.empty()) load_alarms(beside(file.alarm_file), file.profile, reader.errors());
+    if (!file.alarm_file.empty()) load_alarms(files.emplace_back(beside(file.alarm_file)), file.profile, reader.errors());
     if (!reader.errors().empty()) return std::move(reader.errors());
 
     LoadedDrive drive;
+    drive.files = std::move(files);
     if (serial) {
         drive.profile = std::make_shared<const axes::DriveProfile>(std::move(file.profile));
         return drive;

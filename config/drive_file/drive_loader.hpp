@@ -20,6 +20,7 @@ struct LoadedDrive {
     std::vector<ecat::ModuleSelection> modules{};  ///< of a modular drive, one in each slot
     std::string source{},
         checked{};  ///< where its facts come from, and against what they were checked; empty: the manual that its head names
+    std::vector<std::string> files{};  ///< paths of what was read: itself, what it is based on, its objects, its alarms
 };
 
 /// All problems at once, each with file, line and column. `folders`: where the file that it is based on may stand, besides beside it.

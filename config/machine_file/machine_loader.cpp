@@ -49,7 +49,7 @@ public:
           devices_(device_folders(path, options)) {}
 
     LoadedMachine assemble() {
-        LoadedMachine out{std::move(file_.machine), std::move(file_.hmi), {}};
+        LoadedMachine out{std::move(file_.machine), std::move(file_.hmi), {}, {}};
         if (options_.simulate) {
             out.machine.bus.interface.clear();
             if (out.machine.bus.ring) out.machine.bus.ring->interface2.clear();
@@ -60,7 +60,9 @@ public:
                            &out.hmi.history.directory}) {
             if (out.machine.bus.interface.empty()) kept->clear();
             else if (!kept->empty() && fs::path(*kept).is_relative())
-                *kept = (fs::path(path_).parent_path() / *kept).lexically_normal().string();
+                *kept = (options_.state_dir.empty() ? fs::path(path_).parent_path() / *kept : fs::path(options_.state_dir) / *kept)
+                            .lexically_normal()
+                            .string();
         }
         out.machine.bus.cycle = out.machine.cycle;
         for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
@@ -90,6 +92,7 @@ public:
             out.machine.cams.push_back(std::move(entry.cam));
             out.warnings.insert(out.warnings.end(), entry.remarks.begin(), entry.remarks.end());
         }
+        list_files(out);
         check_wiring(out.machine);
         check_events(out.machine);
         add_warnings(out);
@@ -379,6 +382,30 @@ private:
             out.machine.tasks.push_back(std::move(task));
         }
         out.machine.programs.push_back(std::move(program));
+    }
+
+    /// What was read besides the machine file, each once.
+    void list_files(LoadedMachine& out) {
+        const auto add = [&](UsedFile::Kind kind, const std::string& written, const std::string& path) {
+            const bool known = std::any_of(out.files.begin(), out.files.end(), [&](const UsedFile& file) {
+                return file.kind == kind && file.written == written && file.path == path;
+            });
+            if (!known) out.files.push_back({kind, written, path});
+        };
+        for (const auto& path : drives_.files_read()) add(UsedFile::Kind::drive, fs::path(path).filename().string(), path);
+        for (const auto& path : devices_.files_read()) add(UsedFile::Kind::device, fs::path(path).filename().string(), path);
+        for (std::size_t i = 0; i < file_.programs.size() && i < out.machine.programs.size(); ++i)
+            if (const auto& written = file_.programs[i].program.library; options_.resolve_programs && !written.empty())
+                add(UsedFile::Kind::program, written, out.machine.programs[i].library);
+        const auto beside = [&](const std::string& written) {
+            return (fs::path(path_).parent_path() / written).lexically_normal().string();
+        };
+        for (const auto& entry : file_.cams)
+            if (!entry.file.empty()) add(UsedFile::Kind::cam, entry.file, beside(entry.file));
+        for (const auto& view : out.hmi.views)
+            for (const auto& row : view.rows)
+                for (const auto& widget : row)
+                    if (!widget.image_path.empty()) add(UsedFile::Kind::image, widget.image, widget.image_path);
     }
 
     void resolve_library(runtime::ProgramConfig& program) {

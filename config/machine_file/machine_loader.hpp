@@ -3,10 +3,11 @@
 //
 //   auto loaded = config::load_machine("config/machines/demo.yaml", {.simulate = true});
 //   if (auto* errors = std::get_if<std::vector<Error>>(&loaded)) ...     // all of them, each with file:line:col
-//   auto& [machine, hmi, warnings] = std::get<config::LoadedMachine>(loaded);
+//   auto& [machine, hmi, warnings, files] = std::get<config::LoadedMachine>(loaded);
 //
 // Not real-time. Reads the machine file, its drive files and their alarm files; reads no environment.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -24,14 +25,24 @@ struct LoadOptions {
     std::vector<std::string> device_dirs;   ///< the same for `devices`
     std::vector<std::string> program_path;  ///< looked up after the machine file's folder
     std::vector<std::string>
-        data_dirs;  ///< installed data, with `drives` and `devices` inside; looked up last but for the configured install prefix
+        data_dirs;          ///< installed data, with `drives` and `devices` inside; looked up last but for the configured install prefix
+    std::string state_dir;  ///< relative directories of what a machine keeps are in here; empty: beside the machine file
     bool resolve_programs = true;  ///< false: leave `library` as written (a file is checked where no program is built)
+};
+
+/// A file that a machine is made of, besides its own.
+struct UsedFile {
+    enum class Kind : std::uint8_t { drive, device, program, cam, image };
+    Kind kind;
+    std::string written;  ///< as the machine file names it; drive, device: the file's name, with its ending
+    std::string path;     ///< where it was found
 };
 
 struct LoadedMachine {
     runtime::MachineConfig machine;
     hmi::HmiConfig hmi;
     std::vector<Error> warnings;  ///< legal, but perhaps not meant
+    std::vector<UsedFile> files;  ///< each once; programs only where they were resolved
 };
 
 using LoadResult = std::variant<LoadedMachine, std::vector<Error>>;

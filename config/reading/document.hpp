@@ -52,6 +52,7 @@ struct Document {
     std::string file;
     Node root;
     std::vector<Error> errors;
+    std::string based_on{};  ///< path of the file that another reader put beneath it (drive files); empty: none
 };
 
 /// Errors: config.encoding, config.too_large, config.syntax, config.too_deep, config.too_many_nodes, config.duplicate_key,

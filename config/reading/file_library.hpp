@@ -1,6 +1,7 @@
 #pragma once
 // Finds files by name in some folders; each is read once.
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -39,6 +40,15 @@ public:
     [[nodiscard]] bool exists(const std::string& name) const { return !find_file(folders_, name).empty(); }
     [[nodiscard]] std::vector<std::string> names() const { return file_names(folders_); }
     [[nodiscard]] const std::vector<std::string>& folders() const noexcept { return folders_; }
+    /// Paths of all that was read for those that were found, without repetition.
+    [[nodiscard]] std::vector<std::string> files_read() const {
+        std::vector<std::string> out;
+        for (const auto& [name, answer] : files_)
+            if (const auto* loaded = std::get_if<Loaded>(&answer))
+                for (const auto& file : loaded->files)
+                    if (std::find(out.begin(), out.end(), file) == out.end()) out.push_back(file);
+        return out;
+    }
     [[nodiscard]] const std::vector<Error>& errors() const noexcept { return errors_; }
 
 private:

@@ -2,6 +2,7 @@
 
 #include <elf.h>
 
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cstdint>
@@ -58,6 +59,40 @@ Result<void> check_shared_object(const std::string& path) {
         if (!read_at(file, header.e_phoff + std::uint64_t{i} * sizeof segment, segment) ||
             (segment.p_type == PT_LOAD && (segment.p_filesz > size || segment.p_offset > size - segment.p_filesz)))
             return not_loadable(fmt::format("it is cut short: {} bytes are not all of it", size), "copy or build it again");
+    }
+    return {};
+}
+
+std::string build_id_of(const std::string& path) {
+    constexpr std::uint64_t longest_id = 40;
+    constexpr std::uint32_t most_notes = 64;
+    std::ifstream file(path, std::ios::binary);
+    Elf64_Ehdr header{};
+    if (!file || !read_at(file, 0, header)) return {};
+    for (std::uint16_t i = 0; i < header.e_phnum; ++i) {
+        Elf64_Phdr segment{};
+        if (!read_at(file, header.e_phoff + std::uint64_t{i} * sizeof segment, segment)) return {};
+        if (segment.p_type != PT_NOTE) continue;
+        const std::uint64_t padding = segment.p_align == 8 ? 8 : 4;
+        const auto padded = [padding](std::uint64_t size) { return (size + padding - 1) / padding * padding; };
+        std::uint64_t at = 0;
+        for (std::uint32_t n = 0; n < most_notes && at < segment.p_filesz && segment.p_filesz - at >= sizeof(Elf64_Nhdr); ++n) {
+            Elf64_Nhdr note{};
+            if (!read_at(file, segment.p_offset + at, note)) return {};
+            const auto name = at + sizeof note, description = name + padded(note.n_namesz);
+            at = description + padded(note.n_descsz);
+            std::array<char, 4> owner{};
+            if (note.n_type != NT_GNU_BUILD_ID || note.n_namesz != owner.size() || note.n_descsz == 0 || note.n_descsz > longest_id ||
+                !read_at(file, segment.p_offset + name, owner) || std::memcmp(owner.data(), ELF_NOTE_GNU, owner.size()) != 0)
+                continue;
+            std::string id;
+            for (std::uint32_t k = 0; k < note.n_descsz; ++k) {
+                unsigned char byte = 0;
+                if (!read_at(file, segment.p_offset + description + k, byte)) return {};
+                id += fmt::format("{:02x}", byte);
+            }
+            return id;
+        }
     }
     return {};
 }

@@ -11,4 +11,7 @@ namespace taktwerk::runtime {
 /// Reads the ELF headers of a regular file. Errors: unreadable, no ELF shared object of 64 bits, for another processor, cut short.
 [[nodiscard]] Result<void> check_shared_object(const std::string& path);
 
+/// The GNU build id that the linker gave it, hexadecimal; empty where it has none. Of a file that check_shared_object() takes.
+[[nodiscard]] std::string build_id_of(const std::string& path);
+
 }  // namespace taktwerk::runtime

@@ -163,7 +163,7 @@ TEST(HostileFile, WithControlCharactersIsRefused) {
 // --- good files ---------------------------------------------------------------------------------------------------------------
 
 TEST(MachineLoader, TheDemoIsWhatItsCommentsSay) {
-    const auto [machine, hmi, warnings] = must_load(source + "/config/machines/demo.yaml");
+    const auto [machine, hmi, warnings, files] = must_load(source + "/config/machines/demo.yaml");
 
     EXPECT_TRUE(warnings.empty()) << one_a_line(warnings);
     EXPECT_EQ(machine.cycle, 1ms);
@@ -591,6 +591,36 @@ TEST(MachineLoader, AFileMayDescribeOnlyABusAndWhereItsSlavesHang) {
     EXPECT_EQ(wires[0].drift_ppm, -40.0);
     EXPECT_EQ(wires[1].port, 1);
     EXPECT_FALSE(wires[1].drift_ppm);
+}
+
+// --- what a bundle is made of ---------------------------------------------------------------------------------------------------
+
+TEST(UsedFiles, AreThoseOfDrivesDevicesCamsAndImagesEachOnce) {
+    const auto loaded = must_load(source + "/config/machines/demo.yaml");
+    std::vector<std::string> files;
+    for (const auto& file : loaded.files) {
+        EXPECT_TRUE(std::filesystem::is_regular_file(file.path)) << file.path;
+        files.push_back(file.written);
+    }
+    EXPECT_THAT(files, ElementsAre("se-808x.yaml", "se-808x.objects.yaml", "se-808x.alarms.yaml", "sv33-e.yaml", "sv33-e.objects.yaml",
+                                   "sv33-e.alarms.yaml", "demo-cell.svg"))
+        << "two slaves have one drive file; its terminal has none; programs were not asked for";
+    EXPECT_EQ(loaded.files.back().kind, UsedFile::Kind::image);
+    const auto based = must_load(source + "/config/machines/any-servo.yaml");
+    EXPECT_TRUE(std::any_of(based.files.begin(), based.files.end(), [](const UsedFile& file) { return file.written == "cia402.alarms.yaml"; }));
+}
+
+TEST(StateDirectory, TakesTheRelativeDirectoriesOfWhatIsKept) {
+    const std::string machine = "version: 1\nname: m\ncycle: 1 ms\nbus: { interface: eth9, slaves: [{ name: io, terminal: { inputs: 8 } }] }\n";
+    const auto path = written("state.yaml", machine + "retain: kept\nevidence: { directory: seen }\nhistory: { directory: /var/log/m }\n");
+    auto options = without_programs();
+    const auto beside = must_load(path, options);
+    EXPECT_EQ(beside.machine.retain.directory, (std::filesystem::path(path).parent_path() / "kept").lexically_normal().string());
+    options.state_dir = "/state/m";
+    const auto apart = must_load(path, options);
+    EXPECT_EQ(apart.machine.retain.directory, "/state/m/kept");
+    EXPECT_EQ(apart.machine.evidence.directory, "/state/m/seen");
+    EXPECT_EQ(apart.hmi.history.directory, "/var/log/m") << "an absolute one is what it is";
 }
 
 }  // namespace

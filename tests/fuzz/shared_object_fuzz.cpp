@@ -18,6 +18,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (checked.error().what.empty()) std::abort();
         return 0;
     }
+    if (const auto id = taktwerk::runtime::build_id_of(path);
+        id.size() > 80 || id.find_first_not_of("0123456789abcdef") != std::string::npos)
+        std::abort();
     Elf64_Ehdr header{};
     if (size < sizeof header) std::abort();
     std::memcpy(&header, data, sizeof header);
