@@ -26,6 +26,7 @@
 #include "apps/machine/sim_hands.hpp"
 #include "apps/machine/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
+#include "apps/terminal/count_text.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/json_text.hpp"
@@ -55,7 +56,7 @@ using namespace runtime;
 
 struct RunOptions {
     std::string start = "warm";
-    std::string file, trace, pcap, retain, evidence, recordings, history, hmi;
+    std::string file, trace, pcap, record, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
 };
@@ -110,6 +111,20 @@ void finish(const RunFiles& files, const RunOptions& options) {
     files.say_frames(options.quiet || options.json, &MachineLog::print);
 }
 
+/// False: it is not whole, and why has been told.
+bool recording_finished(const RunFiles& files, const RunOptions& options) {
+    if (!files.recording) return true;
+    if (auto ok = files.recording->finish(); !ok) {
+        print_error(ok.error());
+        return false;
+    }
+    if (const auto lost = files.recording->lost(); lost > 0)
+        print_warning(Error{"recording.lost", options.record,
+                            fmt::format("{} did not fit: it cannot be replayed", count_text(lost, "record")),
+                            "record onto a disk that keeps up"});
+    return true;
+}
+
 /// A file that could not be written is told; the next one is tried all the same.
 void say_evidence(const MachineLog& log, Instant now, const Result<Evidence::File>& file) {
     if (!file) log.say(now, "evidence", file.error().text());
@@ -151,11 +166,11 @@ std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport,
     return machine;
 }
 
-int run_virtual(LoadedFile loaded, const RunOptions& options) {
+int run_virtual(LoadedFile loaded, const RunOptions& options, std::vector<std::pair<std::string, std::string>> facts) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
-    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}};
+    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}, {}};
     auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, Duration{}); !ok) {
@@ -169,7 +184,18 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     say_kept(log, clock.now(), *machine, options);
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
+    if (!options.record.empty()) {
+        auto created = MachineRecording::create(options.record, *machine, std::move(facts), clock.now(), RecordedThreads::one);
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        files.recording = std::move(*created);
+    }
     VirtualRunner runner{*machine, world, clock};
+    runner.drain = [&] {
+        if (files.recording) (void)files.recording->drain().ok();  // an error comes again from finish()
+    };
     std::optional<hmi::AlarmHistory> history;  // only where it was asked for: a run in virtual time leaves nothing behind by itself
     if (!options.history.empty() && loaded.hmi.history.rows > 0)
         history.emplace(
@@ -208,6 +234,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
                    "nothing has moved; give --duration more than the bus needs"};
     if (!up) {
         finish(files, options);
+        (void)recording_finished(files, options);
         print_error(up.error());
         return stop_requested() ? exit_ok : exit_bus;
     }
@@ -219,6 +246,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     if (history) history->finish(clock.now());
     finish(files, options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
+    if (!recording_finished(files, options)) return exit_bad_file;
     if (files.trace)
         if (auto ok = files.trace->finish(); !ok) {
             print_error(ok.error());
@@ -484,7 +512,7 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
             for (const auto& remark : nic->remarks()) fmt::print("{}\n", remark);
     }
     ecat::Transport& transport = world ? world->bus() : nic->bus();
-    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}};
+    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}, {}};
     auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
     std::vector<std::unique_ptr<modbus::TtyLine>> ports;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -529,6 +557,8 @@ void add_run(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"warm", "cold", "origin"}));
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
+    sub->add_option("--record", options->record,
+                    "write everything that comes in to this file, for `taktwerk replay` (with --virtual-time)");
     sub->add_option("--evidence", options->evidence,
                     "write what was on the bus around each alarm that stops something into this directory, also on a simulated bus");
     auto* hmi = sub->add_flag(
@@ -548,6 +578,13 @@ void add_run(CLI::App& app, Action& action) {
                                   "Leave out --virtual-time."});
                 return static_cast<int>(exit_usage);
             }
+            if (!options->record.empty() && !options->virtual_time) {
+                print_error(Error{"usage.record", "--record",
+                                  "a run in real time cannot be replayed yet: what crosses between its threads is not in a recording",
+                                  "Add --virtual-time."});
+                return static_cast<int>(exit_usage);
+            }
+            const config::FilesRead read;
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
             if (options->without_events) loaded->machine.simulation.events.clear();
@@ -560,7 +597,10 @@ void add_run(CLI::App& app, Action& action) {
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
-            return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
+            auto facts =
+                options->record.empty() ? decltype(facts_of({}, read, {}, true)){} : facts_of(options->file, read, loaded->machine, true);
+            return options->virtual_time ? run_virtual(std::move(*loaded), *options, std::move(facts))
+                                         : run_real(std::move(*loaded), *options);
         };
     });
 }
