@@ -47,8 +47,8 @@ protected:
     }
     /// A recording of a machine of config/machines/.
     void record(const std::string& machine, const std::string& duration) const {
-        const auto run = command({"run", shipped + machine, "--virtual-time", "--duration", duration, "--record", path("run.twrec"), "--trace",
-                                  path("run.csv"), "--quiet"});
+        const auto run = command({"run", shipped + machine, "--virtual-time", "--duration", duration, "--record", path("run.twrec"),
+                                  "--trace", path("run.csv"), "--quiet"});
         ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
     }
     /// The same file elsewhere, with something replaced.
@@ -84,7 +84,8 @@ TEST_F(ReplayCommand, AnotherMachineFileIsSaidAndTheFirstSignalNamed) {
     record("demo.yaml", "5s");
     ASSERT_EQ(command({"replay", path("run.twrec"), "--quiet"}).code, exit_ok);
 
-    const auto replay = command({"replay", path("run.twrec"), altered("demo.yaml", "acceleration: 5000 mm/s2", "acceleration: 4000 mm/s2"), "--quiet"});
+    const auto replay =
+        command({"replay", path("run.twrec"), altered("demo.yaml", "acceleration: 5000 mm/s2", "acceleration: 4000 mm/s2"), "--quiet"});
 
     EXPECT_EQ(replay.code, exit_differs) << replay.text;
     EXPECT_THAT(replay.text, HasSubstr("file of the machine is another one: crc32 "));
