@@ -71,8 +71,9 @@ void Machine::service_modbus(std::size_t device, Instant now) {
 }
 bool Machine::end_modbus(std::size_t device, Instant now) { return impl_->modbus.finish(device, now); }
 Result<void> Machine::arm() {
-    impl_->note(Call::arm);
-    return impl_->arm();
+    auto done = impl_->arm();
+    impl_->note(Call::arm, {}, done.ok() ? 1 : 0);
+    return done;
 }
 bool Machine::bus_operational() const noexcept { return bus().phase() == ecat::Master::Phase::operational; }
 std::optional<Error> Machine::bus_failure() const {

@@ -67,9 +67,10 @@ std::optional<CycleTick> read_tick(std::span<const std::byte> bytes) {
 std::optional<OperatorCommand> read_command(std::span<const std::byte> bytes) {
     Reading in{bytes};
     OperatorCommand command;
-    command.action = in.one_of(OperatorAction::release_values);
-    command.owner = in.one_of(axes::Owner::commissioning);
-    command.mode = in.one_of(Mode::automatic);
+    // As it was given: what there is not is the desk's to refuse, now as then.
+    command.action = static_cast<OperatorAction>(in.take<std::uint8_t>());
+    command.owner = static_cast<axes::Owner>(in.take<std::uint8_t>());
+    command.mode = static_cast<Mode>(in.take<std::uint8_t>());
     in.flags<std::uint8_t>(command.flag);
     command.axis = in.take<std::uint16_t>();
     command.index = in.take<std::uint16_t>();
@@ -81,7 +82,7 @@ std::optional<OperatorCommand> read_command(std::span<const std::byte> bytes) {
     command.after = in.take<std::uint64_t>();
     if (command.action == OperatorAction::measure) {
         auto& order = command.measure;
-        order.kind = in.one_of(axes::MeasureKind::cogging);
+        order.kind = static_cast<axes::MeasureKind>(in.take<std::uint8_t>());
         order.count = in.take<std::uint16_t>();
         for (double* number : {&order.distance, &order.velocity, &order.acceleration, &order.from_hz, &order.to_hz, &order.period})
             *number = in.number();

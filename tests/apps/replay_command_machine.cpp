@@ -61,6 +61,10 @@ protected:
         for (const char* data : {"drives", "devices"})
             if (!std::filesystem::exists(path(data)))
                 std::filesystem::create_directory_symlink(std::filesystem::path(shipped) / ".." / data, path(data));
+        for (const auto& beside : std::filesystem::directory_iterator(shipped))
+            if (beside.path().extension() == ".svg")
+                std::filesystem::copy_file(beside.path(), folder_ + "/machines/" + beside.path().filename().string(),
+                                           std::filesystem::copy_options::overwrite_existing);
         std::ofstream(path("machines/" + machine)) << text;
         return path("machines/" + machine);
     }
