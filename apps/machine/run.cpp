@@ -111,6 +111,15 @@ void finish(const RunFiles& files, const RunOptions& options) {
     files.say_frames(options.quiet || options.json, &MachineLog::print);
 }
 
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+void say_losses(const RunFiles& files, const RunOptions& options) {
+    if (const auto lost = files.recording ? files.recording->lost() : 0; lost > 0)
+        print_warning(Error{"recording.lost", options.record,
+                            fmt::format("{} did not fit: it cannot be replayed", count_text(lost, "record")),
+                            "record onto a disk that keeps up"});
+}
+
 /// False: it is not whole, and why has been told.
 bool recording_finished(const RunFiles& files, const RunOptions& options) {
     if (!files.recording) return true;
@@ -118,10 +127,7 @@ bool recording_finished(const RunFiles& files, const RunOptions& options) {
         print_error(ok.error());
         return false;
     }
-    if (const auto lost = files.recording->lost(); lost > 0)
-        print_warning(Error{"recording.lost", options.record,
-                            fmt::format("{} did not fit: it cannot be replayed", count_text(lost, "record")),
-                            "record onto a disk that keeps up"});
+    say_losses(files, options);
     return true;
 }
 
@@ -166,7 +172,7 @@ std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport,
     return machine;
 }
 
-int run_virtual(LoadedFile loaded, const RunOptions& options, std::vector<std::pair<std::string, std::string>> facts) {
+int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
@@ -294,7 +300,7 @@ private:
 
 /// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
 int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFiles& files, const hmi::HmiConfig& hmi_config,
-               const RunOptions& options) {
+               const RunOptions& options, Facts facts) {
     SystemClock clock;
     const auto start = clock.now();
     LineWriter out{STDOUT_FILENO, [&options](std::uint64_t count) {
@@ -412,6 +418,16 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     }
 
     RealtimeRunner runner{machine, world};
+    if (!options.record.empty()) {
+        auto created = MachineRecording::create(options.record, machine, std::move(facts), start, RecordedThreads::several);
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        files.recording = std::move(*created);
+        write_beside("record", files.recording);
+        runner.record_in_step();
+    }
     bool said_stuck = false;
     runner.on_stuck = [&](const StuckCycle* stuck) {
         link.tell_stuck(stuck);
@@ -476,6 +492,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         std::_Exit(exit_bad_file);
     }
     files.say_frames(options.quiet || options.json, put);
+    say_losses(files, options);
     if (served) print_summary(machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start), put);
     out.finish(last_lines_patience);
     if (!served) {
@@ -493,7 +510,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
 }
 
-int run_real(LoadedFile loaded, const RunOptions& options) {
+int run_real(LoadedFile loaded, const RunOptions& options, Facts facts) {
     SystemClock clock;
     std::unique_ptr<World> world;
     std::unique_ptr<ecat::BusInterfaces> nic;
@@ -539,7 +556,7 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
         print_error(ok.error());
         return exit_bad_file;
     }
-    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options);
+    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options, std::move(facts));
 }
 
 }  // namespace
@@ -557,8 +574,7 @@ void add_run(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"warm", "cold", "origin"}));
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
-    sub->add_option("--record", options->record,
-                    "write everything that comes in to this file, for `taktwerk replay` (with --virtual-time)");
+    sub->add_option("--record", options->record, "write everything that comes in to this file, for `taktwerk replay`");
     sub->add_option("--evidence", options->evidence,
                     "write what was on the bus around each alarm that stops something into this directory, also on a simulated bus");
     auto* hmi = sub->add_flag(
@@ -578,12 +594,6 @@ void add_run(CLI::App& app, Action& action) {
                                   "Leave out --virtual-time."});
                 return static_cast<int>(exit_usage);
             }
-            if (!options->record.empty() && !options->virtual_time) {
-                print_error(Error{"usage.record", "--record",
-                                  "a run in real time cannot be replayed yet: what crosses between its threads is not in a recording",
-                                  "Add --virtual-time."});
-                return static_cast<int>(exit_usage);
-            }
             const config::FilesRead read;
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
@@ -597,10 +607,10 @@ void add_run(CLI::App& app, Action& action) {
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
-            auto facts =
-                options->record.empty() ? decltype(facts_of({}, read, {}, true)){} : facts_of(options->file, read, loaded->machine, true);
+            const bool simulated = options->simulate || options->virtual_time;
+            auto facts = options->record.empty() ? Facts{} : facts_of(options->file, read, loaded->machine, simulated);
             return options->virtual_time ? run_virtual(std::move(*loaded), *options, std::move(facts))
-                                         : run_real(std::move(*loaded), *options);
+                                         : run_real(std::move(*loaded), *options, std::move(facts));
         };
     });
 }

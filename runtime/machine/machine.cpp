@@ -61,7 +61,7 @@ void Machine::service_bus(Instant now) {
     impl_->service_bus(now);
 }
 void Machine::service_programs() {
-    impl_->note(Call::programs);
+    impl_->note_beside(Call::programs);
     impl_->programs.call_hooks();
 }
 void Machine::service_disk(Instant now) { impl_->service_disk(now); }
@@ -101,7 +101,7 @@ void Machine::run_slow_tasks() noexcept {
 std::size_t Machine::slow_task_count() const noexcept { return impl_->programs.slow_task_count(); }
 bool Machine::run_slow_task(std::size_t index) noexcept {
     const bool ran = impl_->programs.run_slow_task(index);
-    if (ran) impl_->note(Call::slow_task, {}, index);
+    if (ran) impl_->note_beside(Call::slow_task, index);
     return ran;
 }
 
@@ -134,7 +134,8 @@ MachinePhase Machine::phase() const noexcept { return impl_->body.phase.load(std
 void Machine::record(Recorder& recorder, RecordedThreads threads) {
     impl_->outcome.begin();
     impl_->body.recorder = &recorder;
-    impl_->body.calls = threads == RecordedThreads::one ? &recorder : nullptr;
+    impl_->body.calls = &recorder;
+    impl_->body.threads_beside = threads == RecordedThreads::several;
     impl_->body.wire.record(recorder);
     record_wire(recorder, impl_->body.wire.mac(), impl_->body.wire.ring() != nullptr);
 }

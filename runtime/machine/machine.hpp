@@ -42,7 +42,8 @@ struct AlarmText {
 
 class ReplayedInbox;
 
-/// Who calls a recorded machine. One thread for everything (virtual time): then what is done beside the cycle is recorded too, in its order.
+/// Who calls a recorded machine: one thread for everything (virtual time), or the cycle's thread for cycles, service_bus(), arm(), start_bus() and
+/// stop_bus(), and any others for the rest (RealtimeRunner::record_in_step()).
 enum class RecordedThreads : std::uint8_t { several, one };
 
 class Machine {

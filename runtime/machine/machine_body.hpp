@@ -43,7 +43,8 @@ struct MachineBody {
     WatchedRequests requests;           // of operators; of programs through theirs
     AlarmLog log;
     Recorder* recorder = nullptr;  // of what the cycle takes, and what it makes of it; nullptr: nobody records
-    Recorder* calls = nullptr;     // of what is done beside the cycle, where one thread does it all
+    Recorder* calls = nullptr;     // likewise, of what the cycle's thread does between two cycles
+    bool threads_beside = false;   // start() and stop() of programs and slower tasks have threads of their own
 
     bool replayed = false;  // what comes from outside comes from a recording: nobody else is asked
 

@@ -40,7 +40,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       desk(body, hands, measuring, programs),
       supervisor(body, drives, groups, modbus, programs, desk, retain.get()),
       outcome(body, drives),
-      replayed(body, desk, drives.serial(), modbus, supervisor),
+      replayed(body, programs, desk, drives.serial(), modbus, supervisor),
       snapshots(body, measuring, programs),
       layout(layout_of(body, drives, programs.host())),
       rows(body, programs, layout),

@@ -46,6 +46,10 @@ struct Machine::Impl {
     void note(Call call, Instant now = {}, std::size_t index = 0) noexcept {
         if (body.calls != nullptr) record_call(*body.calls, call, now, static_cast<std::uint16_t>(index));
     }
+    /// The same of what may have a thread of its own: then the cycle records that it was done.
+    void note_beside(Call call, std::size_t index = 0) noexcept {
+        if (!body.threads_beside) note(call, {}, index);
+    }
     void service_bus(Instant now);
     void service_disk(Instant now) {
         if (retain && !body.replayed) retain->step(now);

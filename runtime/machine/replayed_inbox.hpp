@@ -13,8 +13,9 @@ namespace taktwerk::runtime {
 /// All say whether the machine has what the record names.
 class ReplayedInbox {
 public:
-    ReplayedInbox(MachineBody& body, OperatorDesk& desk, SerialDrives& serial, ModbusDevices& modbus, Supervisor& supervisor)
-        : body_(body), desk_(desk), serial_(serial), modbus_(modbus), supervisor_(supervisor) {}
+    ReplayedInbox(MachineBody& body, ProgramRunner& programs, OperatorDesk& desk, SerialDrives& serial, ModbusDevices& modbus,
+                  Supervisor& supervisor)
+        : body_(body), programs_(programs), desk_(desk), serial_(serial), modbus_(modbus), supervisor_(supervisor) {}
 
     /// From here on nothing comes from where it usually does.
     void begin() noexcept { body_.replayed = true; }
@@ -33,11 +34,16 @@ public:
         supervisor_.replay(says);
         return true;
     }
+    [[nodiscard]] bool put(const HookRecord& record) { return programs_.replay_hook(record.program, record.stop); }
+    [[nodiscard]] bool put(const SlowRecord& record) noexcept {
+        return record.task < programs_.slow_task_count() && programs_.run_slow_task(record.task);
+    }
     /// All of a cycle is in.
     void complete() { modbus_.publish_replayed(); }
 
 private:
     MachineBody& body_;
+    ProgramRunner& programs_;
     OperatorDesk& desk_;
     SerialDrives& serial_;
     ModbusDevices& modbus_;

@@ -184,6 +184,21 @@ std::optional<CallRecord> read_call(std::span<const std::byte> bytes) {
     return in.ended(record);
 }
 
+std::optional<HookRecord> read_hook(std::span<const std::byte> bytes) {
+    Reading in{bytes};
+    HookRecord record;
+    record.program = in.take<std::uint16_t>();
+    in.flags<std::uint8_t>(record.stop);
+    return in.ended(record);
+}
+
+std::optional<SlowRecord> read_slow(std::span<const std::byte> bytes) {
+    Reading in{bytes};
+    SlowRecord record;
+    record.task = in.take<std::uint16_t>();
+    return in.ended(record);
+}
+
 std::optional<WireRecord> read_wire(std::span<const std::byte> bytes) {
     Reading in{bytes};
     WireRecord record;

@@ -42,6 +42,13 @@ struct CallRecord {
     Instant now{};
     std::uint16_t index = 0;
 };
+struct HookRecord {
+    std::uint16_t program = 0;
+    bool stop = false;
+};
+struct SlowRecord {
+    std::uint16_t task = 0;
+};
 struct StartFileRecord {
     std::string name;
     std::span<const std::byte> bytes;  ///< of the record
@@ -67,6 +74,8 @@ struct AxisSetpoint {
 [[nodiscard]] std::optional<ecat::RingState> read_ring(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<DiskSays> read_disk(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<CallRecord> read_call(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<HookRecord> read_hook(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<SlowRecord> read_slow(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<WireRecord> read_wire(std::span<const std::byte> bytes);
 /// A name without folders.
 [[nodiscard]] std::optional<StartFileRecord> read_start_file(std::span<const std::byte> bytes);

@@ -17,6 +17,8 @@
 //   channel  u16 Modbus device, u16 channel, i64 word: of the request before                   12 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
 //   disk     u8 what its thread says of it, when it changes (see DiskSays)
+//   hook     u16 program, u8 whether it was stop() and not start(): that has run on a thread of its own, and the cycle takes note of it
+//   slow     u16 slower task, whose run on a thread of its own has ended
 
 #include <algorithm>
 #include <array>
@@ -37,7 +39,8 @@ namespace taktwerk::runtime {
 
 inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4, departure_channel = 5,
                                sample_channel = 6, modbus_request_channel = 7, modbus_word_channel = 8, level_channel = 9,
-                               half_frame_channel = 10, refused_channel = 11, link_channel = 12, ring_channel = 13, disk_channel = 14;
+                               half_frame_channel = 10, refused_channel = 11, link_channel = 12, ring_channel = 13, disk_channel = 14,
+                               hook_channel = 22, slow_channel = 23;
 
 namespace inbox_record {
 template <std::size_t Size>
@@ -169,6 +172,19 @@ inline void record_disk(Recorder& recorder, Instant at, const DiskSays& says) no
     inbox_record::Bytes<1> bytes;
     bytes.put(static_cast<std::uint8_t>((says.outdated ? 1u : 0u) | (says.failing ? 2u : 0u)));
     recorder.append(disk_channel, at, bytes.all());
+}
+
+inline void record_hook(Recorder& recorder, Instant at, std::uint16_t program, bool stop) noexcept {
+    inbox_record::Bytes<3> bytes;
+    bytes.put(program);
+    bytes.put(static_cast<std::uint8_t>(stop ? 1 : 0));
+    recorder.append(hook_channel, at, bytes.all());
+}
+
+inline void record_slow(Recorder& recorder, Instant at, std::uint16_t task) noexcept {
+    inbox_record::Bytes<2> bytes;
+    bytes.put(task);
+    recorder.append(slow_channel, at, bytes.all());
 }
 
 }  // namespace taktwerk::runtime

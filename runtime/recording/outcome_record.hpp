@@ -19,22 +19,20 @@
 namespace taktwerk::runtime {
 
 inline constexpr RecordChannel setpoints_channel = 15, points_channel = 16, wish_channel = 17, outputs_channel = 18, call_channel = 19;
-/// A file of what was kept over a time without power, as the machine found it: u16 length of its name, name, bytes. Before the first tick.
-inline constexpr RecordChannel start_file_channel = 20;
 inline constexpr RecordChannel wire_channel = 21;
 
 /// RecordingInfo::channels of a recording of a machine: the name of each channel at its number.
 [[nodiscard]] inline std::vector<std::string> inbox_channels() {
     return {"",        "tick",       "frame",      "command", "object", "departure", "sample",    "modbus_request", "modbus_word",
             "level",   "half_frame", "refused",    "link",    "ring",   "disk",      "setpoints", "points",         "wish",
-            "outputs", "call",       "start_file", "wire"};
+            "outputs", "call",       "start_file", "wire",    "hook",   "slow"};
 }
 
-/// What Machine does outside the cycle, in the order in which one thread did it.
+/// What Machine does outside the cycle, in the order in which the cycle's thread did it.
 enum class Call : std::uint8_t {
     start_bus,
     stop_bus,
-    arm,
+    arm,        ///< `index`: 1 when it was
     service,    ///< all of Machine::service()
     bus,        ///< Machine::service_bus()
     programs,   ///< Machine::service_programs()

@@ -25,6 +25,9 @@ inline constexpr std::string_view file_prefix = "file:", program_prefix = "progr
 /// nullptr: not there.
 [[nodiscard]] const std::string* find_fact(const RecordingInfo& info, std::string_view name) noexcept;
 
+/// A file of what was kept over a time without power, as the machine found it: u16 length of its name, name, bytes. Before the first tick.
+inline constexpr RecordChannel start_file_channel = 20;
+
 struct StartFile {
     std::string name;
     std::string bytes;

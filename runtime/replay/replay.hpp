@@ -6,7 +6,7 @@
 //     while (replay->step() == Replay::Step::more) {}
 //     if (replay->difference()) ...
 //
-// Errors: replay.not_of_a_machine, replay.channels, replay.lost, replay.several_threads, replay.other_machine, replay.malformed, replay.folder.
+// Errors: replay.not_of_a_machine, replay.channels, replay.lost, replay.other_machine, replay.malformed, replay.folder.
 
 #include <cstdint>
 #include <memory>
@@ -17,10 +17,7 @@
 
 #include "core/recording_file.hpp"
 #include "runtime/machine/machine.hpp"
-#include "runtime/machine/replayed_inbox.hpp"
 #include "runtime/replay/difference.hpp"
-#include "runtime/replay/replay_transport.hpp"
-#include "runtime/replay/stand_ins.hpp"
 
 namespace taktwerk::runtime {
 
@@ -37,42 +34,22 @@ public:
     /// A cycle, or what was done beside it. After `differs` it may go on, and tells the next difference.
     Step step();
 
-    [[nodiscard]] Machine& machine() noexcept { return *machine_; }
+    [[nodiscard]] Machine& machine() noexcept;
     /// The last step that differed.
-    [[nodiscard]] const std::optional<ReplayDifference>& difference() const noexcept { return difference_; }
-    [[nodiscard]] const std::optional<Error>& error() const noexcept { return error_; }
+    [[nodiscard]] const std::optional<ReplayDifference>& difference() const noexcept;
+    [[nodiscard]] const std::optional<Error>& error() const noexcept;
     /// Cycles so far since the machine was up, and those before.
-    [[nodiscard]] std::uint64_t cycles() const noexcept { return cycles_; }
-    [[nodiscard]] std::uint64_t cycles_before() const noexcept { return cycles_before_; }
+    [[nodiscard]] std::uint64_t cycles() const noexcept;
+    [[nodiscard]] std::uint64_t cycles_before() const noexcept;
     /// Of the last cycle.
-    [[nodiscard]] Instant now() const noexcept { return now_; }
+    [[nodiscard]] Instant now() const noexcept;
     /// What the recording calls 0.
-    [[nodiscard]] Instant start() const noexcept { return start_; }
+    [[nodiscard]] Instant start() const noexcept;
 
 private:
-    struct Folder;
-    Replay(const Recording& recording, const WireRecord& wire, const MachineConfig& config);
-
-    [[nodiscard]] bool begins_a_step(std::size_t record) const noexcept;
-    /// Everything of [first, last) that comes from outside goes in.
-    [[nodiscard]] bool put(std::size_t first, std::size_t last);
-    [[nodiscard]] bool put(const RecordView& record);
-    [[nodiscard]] bool perform(const RecordView& record);
-    void compare(std::size_t first, std::size_t last);
-
-    const Recording& recording_;
-    std::unique_ptr<Folder> folder_;
-    ReplayTransport transport_;
-    StandIns stand_ins_;
-    Recorder again_;
-    std::unique_ptr<Machine> machine_;
-    std::size_t next_ = 0;
-    bool armed_ = false;
-    std::uint64_t cycles_ = 0, cycles_before_ = 0;
-    Instant now_{}, start_{};
-    Outcome then_, now_made_;  // as of the last step
-    std::optional<ReplayDifference> difference_;
-    std::optional<Error> error_;
+    struct Impl;
+    explicit Replay(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace taktwerk::runtime
