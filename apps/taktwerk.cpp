@@ -48,9 +48,10 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.footer(
         "Exit codes: 0 ok, 2 usage, 3 bad file, 4 bus, 5 refused by the machine, 6 no running machine, 7 no real time, 8 ended with an "
-        "alarm");
+        "alarm, 9 could not end, 10 a replay differs");
     Action action;
     add_run(app, action);
+    add_replay(app, action);
     add_check(app, action);
     add_status(app, action);
     add_monitor(app, action);

@@ -206,6 +206,14 @@ Result<Signal> Master::input(std::size_t slave, std::uint16_t object, std::uint8
 Result<Signal> Master::output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const {
     return impl_->resolve(slave, object, sub, true);
 }
+std::optional<Master::OutputPlace> Master::output_at(std::size_t bit) const noexcept {
+    if (!impl_->cycle.published()) return std::nullopt;
+    const auto& slaves = impl_->bus->plan.slaves;
+    for (std::size_t s = 0; s < slaves.size(); ++s)
+        for (const auto& entry : slaves[s].mapped_outputs)
+            if (bit >= entry.bit_offset && bit < std::size_t{entry.bit_offset} + entry.bits) return OutputPlace{s, entry.index, entry.sub};
+    return std::nullopt;
+}
 bool Master::maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept {
     return impl_->find(slave, object, sub, true) != nullptr;
 }

@@ -85,6 +85,13 @@ public:
     [[nodiscard]] std::span<const HotConnectGroup> groups() const noexcept;
     [[nodiscard]] Result<Signal> input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
     [[nodiscard]] Result<Signal> output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
+    /// Whose bit of the outputs it is: for words. Service side.
+    struct OutputPlace {
+        std::size_t slave = 0;
+        std::uint16_t object = 0;
+        std::uint8_t sub = 0;
+    };
+    [[nodiscard]] std::optional<OutputPlace> output_at(std::size_t bit) const noexcept;
     [[nodiscard]] bool maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
     [[nodiscard]] bool maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
     /// Outputs that nobody asked for, of a slave whose PDOs nobody stated: whoever writes its outputs lets them be what they were.

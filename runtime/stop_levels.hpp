@@ -33,6 +33,13 @@ public:
     Ticket release_jog(std::uint16_t axis) noexcept { return raise(axes_ + axis); }
     Ticket shutdown() noexcept { return raise(2 * axes_ + 1); }
     [[nodiscard]] std::uint64_t raised() const noexcept { return raised_.load(std::memory_order_acquire); }
+    /// From a recording: with the number that it had there.
+    void raise_again(StopLevel level, std::uint16_t axis, std::uint64_t number) noexcept {
+        const std::size_t all = level == StopLevel::shutdown ? 2 * axes_ + 1 : 2 * axes_;
+        const std::size_t slot = axis >= axes_ ? all : level == StopLevel::release_jog ? axes_ + axis : axis;
+        slots_[slot].asked.store(number, std::memory_order_release);
+        if (raised_.load(std::memory_order_relaxed) < number) raised_.store(number, std::memory_order_release);
+    }
     [[nodiscard]] bool taken(Ticket ticket) const noexcept {
         return slots_[ticket.slot].taken.load(std::memory_order_acquire) >= ticket.number;
     }

@@ -32,6 +32,7 @@
 #include "apps/machine/stop_signal.hpp"
 #include "apps/machine/unfinished_run.hpp"
 #include "apps/taktwerk.hpp"
+#include "apps/terminal/count_text.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/json_text.hpp"
@@ -63,7 +64,7 @@ using namespace runtime;
 struct RunOptions {
     std::string start = "warm";
     std::string run_before;  ///< what is to be said of it; empty: it ended in order
-    std::string file, trace, pcap, retain, evidence, recordings, history, hmi;
+    std::string file, trace, pcap, record, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
     std::string bundle, root;
@@ -121,6 +122,26 @@ void finish(const RunFiles& files, const RunOptions& options) {
     files.say_frames(options.quiet || options.json, &MachineLog::print);
 }
 
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+void say_losses(const RunFiles& files, const RunOptions& options) {
+    if (const auto lost = files.recording ? files.recording->lost() : 0; lost > 0)
+        print_warning(Error{"recording.lost", options.record,
+                            fmt::format("{} did not fit: it cannot be replayed", count_text(lost, "record")),
+                            "record onto a disk that keeps up"});
+}
+
+/// False: it is not whole, and why has been told.
+bool recording_finished(const RunFiles& files, const RunOptions& options) {
+    if (!files.recording) return true;
+    if (auto ok = files.recording->finish(); !ok) {
+        print_error(ok.error());
+        return false;
+    }
+    say_losses(files, options);
+    return true;
+}
+
 /// A file that could not be written is told; the next one is tried all the same.
 void say_evidence(const MachineLog& log, Instant now, const Result<Evidence::File>& file) {
     if (!file) log.say(now, "evidence", file.error().text());
@@ -176,11 +197,11 @@ std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport,
     return machine;
 }
 
-int run_virtual(LoadedFile loaded, const RunOptions& options) {
+int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
-    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}};
+    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}, {}};
     auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, Duration{}); !ok) {
@@ -195,7 +216,18 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     say_kept(log, clock.now(), *machine, options);
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
+    if (!options.record.empty()) {
+        auto created = MachineRecording::create(options.record, *machine, std::move(facts), clock.now(), RecordedThreads::one);
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        files.recording = std::move(*created);
+    }
     VirtualRunner runner{*machine, world, clock};
+    runner.drain = [&] {
+        if (files.recording) (void)files.recording->drain().ok();  // an error comes again from finish()
+    };
     std::optional<hmi::AlarmHistory> history;  // only where it was asked for: a run in virtual time leaves nothing behind by itself
     if (!options.history.empty() && loaded.hmi.history.rows > 0)
         history.emplace(
@@ -239,6 +271,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
                    "nothing has moved; give --duration more than the bus needs"};
     if (!up) {
         finish(files, options);
+        (void)recording_finished(files, options);
         print_error(up.error());
         return stop_requested() ? exit_ok : exit_bus;
     }
@@ -250,6 +283,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     if (history) history->finish(clock.now());
     finish(files, options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
+    if (!recording_finished(files, options)) return exit_bad_file;
     if (files.trace)
         if (auto ok = files.trace->finish(); !ok) {
             print_error(ok.error());
@@ -297,7 +331,7 @@ private:
 
 /// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
 int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFiles& files, const hmi::HmiConfig& hmi_config,
-               const RunOptions& options) {
+               const RunOptions& options, Facts facts) {
     SystemClock clock;
     const auto start = clock.now();
     LineWriter out{STDOUT_FILENO, [&options](std::uint64_t count) {
@@ -436,6 +470,16 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     ServiceManager manager{[](const char* name) -> const char* { return std::getenv(name); }};
     StatusLine status;
     RealtimeRunner runner{machine, world};
+    if (!options.record.empty()) {
+        auto created = MachineRecording::create(options.record, machine, std::move(facts), start, RecordedThreads::several);
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        files.recording = std::move(*created);
+        write_beside("record", files.recording);
+        runner.record_in_step();
+    }
     bool said_stuck = false;
     runner.on_stuck = [&](const StuckCycle* stuck) {
         link.tell_stuck(stuck);
@@ -509,6 +553,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         std::_Exit(exit_bad_file);
     }
     files.say_frames(options.quiet || options.json, put);
+    say_losses(files, options);
     if (served) print_summary(machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start), put);
     out.finish(last_lines_patience);
     if (!served) {
@@ -526,7 +571,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
 }
 
-int run_real(LoadedFile loaded, const RunOptions& options) {
+int run_real(LoadedFile loaded, const RunOptions& options, Facts facts) {
     SystemClock clock;
     std::unique_ptr<World> world;
     std::unique_ptr<ecat::BusInterfaces> nic;
@@ -545,7 +590,7 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
             for (const auto& remark : nic->remarks()) fmt::print("{}\n", remark);
     }
     ecat::Transport& transport = world ? world->bus() : nic->bus();
-    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}};
+    RunFiles files{options.pcap, options.trace, {}, {}, {}, {}, {}};
     auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
     std::vector<std::unique_ptr<modbus::TtyLine>> ports;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -572,13 +617,13 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
         print_error(ok.error());
         return exit_bad_file;
     }
-    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options);
+    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options, std::move(facts));
 }
 
 /// Who restarts a machine that crashed is no operator: it comes up without power, and nothing in it begins by itself.
-int run_marked(LoadedFile loaded, RunOptions options) {
+int run_marked(LoadedFile loaded, RunOptions options, Facts facts) {
     const auto socket = loaded.hmi.socket.empty() ? hmi::make_socket_path(loaded.machine.name) : Result<std::string>{loaded.hmi.socket};
-    if (!socket) return run_real(std::move(loaded), options);  // says why itself
+    if (!socket) return run_real(std::move(loaded), options, std::move(facts));  // says why itself
     auto mark = UnfinishedRun::begin(std::filesystem::path(*socket).replace_extension(".running"), boot_of_this_computer());
     if (!mark && !options.quiet) print_error(mark.error());
     if (mark && mark->before()) {
@@ -588,7 +633,7 @@ int run_marked(LoadedFile loaded, RunOptions options) {
             "itself. Look why it ended; then `taktwerk mode automatic` and `taktwerk start PROGRAM`",
             mark->before()->process);
     }
-    const int code = run_real(std::move(loaded), options);
+    const int code = run_real(std::move(loaded), options, std::move(facts));
     if (mark) mark->ended();
     return code;
 }
@@ -629,6 +674,7 @@ void add_run(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"warm", "cold", "origin"}));
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
+    sub->add_option("--record", options->record, "write everything that comes in to this file, for `taktwerk replay`");
     sub->add_option("--evidence", options->evidence,
                     "write what was on the bus around each alarm that stops something into this directory, also on a simulated bus");
     auto* hmi = sub->add_flag(
@@ -648,6 +694,7 @@ void add_run(CLI::App& app, Action& action) {
                                   "Leave out --virtual-time."});
                 return static_cast<int>(exit_usage);
             }
+            const config::FilesRead read;
             auto loading = load_options(options->simulate || options->virtual_time);
             if (const auto chosen = choose(*options, loading); !chosen) {
                 print_error(chosen.error());
@@ -665,7 +712,10 @@ void add_run(CLI::App& app, Action& action) {
             if (!options->recordings.empty()) recordings = options->recordings;
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
-            const int code = options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_marked(std::move(*loaded), *options);
+            const bool simulated = options->simulate || options->virtual_time;
+            auto facts = options->record.empty() ? Facts{} : facts_of(options->file, read, loaded->machine, simulated);
+            const int code = options->virtual_time ? run_virtual(std::move(*loaded), *options, std::move(facts))
+                                                   : run_marked(std::move(*loaded), *options, std::move(facts));
             if (options->from_bundle && code == exit_ok) options->from_bundle->ended_as_asked();
             return code;
         };

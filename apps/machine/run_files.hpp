@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/machine/machine_log.hpp"
+#include "apps/machine/machine_recording.hpp"
 #include "apps/machine/trace_csv.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
@@ -24,6 +25,7 @@ struct RunFiles {
     std::shared_ptr<runtime::Evidence> evidence;
     std::shared_ptr<TraceCsv> trace;
     std::shared_ptr<runtime::FlightRecorder> recorder;
+    std::shared_ptr<MachineRecording> recording;  ///< for `replay`
 
     /// `epoch`: calendar time at machine time 0. Stays where it is until the machine's last cycle. Errors: of the files.
     [[nodiscard]] Result<void> open(runtime::Machine& machine, Duration epoch);

@@ -13,6 +13,7 @@ enum ExitCode : int {
     exit_realtime = 7,    ///< real time was required and is not there
     exit_alarm = 8,       ///< the run ended with a machine-wide alarm standing
     exit_hung = 9,        ///< the run was told to end and could not: something hangs, and the process was ended as it was
+    exit_differs = 10,    ///< a replay did something else than was recorded
 };
 
 }  // namespace taktwerk::apps

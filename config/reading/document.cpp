@@ -14,6 +14,8 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include "config/reading/files_read.hpp"
+
 namespace taktwerk::config {
 
 namespace {
@@ -238,6 +240,7 @@ Result<std::string> read_text(const std::string& path, std::string_view kind, st
         return fail("config.unreadable", fmt::format("the file cannot be opened: {}", std::strerror(errno)), "check its permissions");
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad()) return fail("config.unreadable", "the file cannot be read", "check the disk and its permissions");
+    FilesRead::note(path, text);
     return text;
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "ecat/dc/sync0_budget.hpp"
-#include "ecat/ring/ring_transport.hpp"
+#include "ecat/ring/ring_view.hpp"
 
 namespace taktwerk::ecat {
 

@@ -73,7 +73,7 @@ private:
     void copy_statistics() noexcept;
 
     Transport& transport_;
-    RingTransport* ring_;  ///< nullptr: one interface
+    RingView* ring_;  ///< nullptr: one interface
     const BusConfig& config_;
     Exchange exchange_;
     AcyclicChannel channel_;

@@ -24,6 +24,7 @@
 
 #include "ecat/ring/frame_merge.hpp"
 #include "ecat/ring/ring_state.hpp"
+#include "ecat/ring/ring_view.hpp"
 #include "ecat/transport/transport.hpp"
 
 namespace taktwerk::ecat {
@@ -38,7 +39,7 @@ struct RingStatistics {
     std::uint64_t unsent = 0;       ///< copies that their interface did not take
 };
 
-class RingTransport final : public Transport {
+class RingTransport final : public Transport, public RingView {
 public:
     /// Both outlive the ring. `patience`: how long a copy that is back waits for its twin, after sending; at most what lies between send()
     /// and the receive() of the next cycle. Allocates all that it needs.
@@ -55,15 +56,13 @@ public:
     /// One is enough.
     [[nodiscard]] bool link_up() const noexcept override { return ends_[0]->link_up() || ends_[1]->link_up(); }
     [[nodiscard]] std::optional<Error> link_trouble() const override;
-    [[nodiscard]] RingTransport* ring() noexcept override { return this; }
+    [[nodiscard]] RingView* ring() noexcept override { return this; }
 
     // --- of the cycle's thread --------------------------------------------------------------------------------------------
-    /// As of the frames given back last.
-    [[nodiscard]] const RingState& state() const noexcept { return state_; }
+    [[nodiscard]] const RingState& state() const noexcept override { return state_; }
     [[nodiscard]] const RingStatistics& statistics() const noexcept { return statistics_; }
-    [[nodiscard]] bool link_up(std::size_t end) const noexcept { return ends_[end]->link_up(); }
-    /// What the half without the reference clock gets in the place of its time.
-    void set_clocks(const RingClocks& clocks) noexcept { clocks_ = clocks; }
+    [[nodiscard]] bool link_up(std::size_t end) const noexcept override { return ends_[end]->link_up(); }
+    void set_clocks(const RingClocks& clocks) noexcept override { clocks_ = clocks; }
 
 private:
     static constexpr std::size_t first = 0, second = 1, copies = 2;

@@ -18,7 +18,7 @@ struct ReceivedFrame {
     bool half = false;     ///< of a broken ring, and the other half's copy got lost: who was not met may be there all the same
 };
 
-class RingTransport;
+class RingView;
 
 class Transport {
 public:
@@ -36,7 +36,7 @@ public:
     /// Why there is no link, where the interface itself is the reason and no cable: switched off, renamed, gone. Not real-time.
     [[nodiscard]] virtual std::optional<Error> link_trouble() const { return std::nullopt; }
     /// Itself where two interfaces are one ring (ecat/ring/), for whoever has to know; nullptr otherwise.
-    [[nodiscard]] virtual RingTransport* ring() noexcept { return nullptr; }
+    [[nodiscard]] virtual RingView* ring() noexcept { return nullptr; }
 };
 
 }  // namespace taktwerk::ecat

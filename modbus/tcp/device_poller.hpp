@@ -39,6 +39,11 @@ public:
         std::vector<std::int64_t> words;     ///< of each channel; of those that are read what came last
         std::vector<RequestState> requests;  ///< as requests()
     };
+    /// On the thread of step() and in its place, where nobody is asked: the device says this.
+    void replay(const Report& report) {
+        reports_.back() = report;
+        reports_.publish();
+    }
     /// The newest one, and whether it is another one than last time.
     [[nodiscard]] LatestValue<Report>::Reading report() noexcept { return reports_.read(); }
     /// What the written channels shall be: a word for each channel of the device.

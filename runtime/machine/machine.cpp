@@ -9,7 +9,6 @@
 #include "runtime/check/machine_check.hpp"
 #include "runtime/check/program_check.hpp"
 #include "runtime/machine/machine_impl.hpp"
-#include "runtime/recording/inbox_record.hpp"
 
 namespace taktwerk::runtime {
 
@@ -42,30 +41,40 @@ std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(Machin
 // --- service side -----------------------------------------------------------------------------------------------------------
 
 void Machine::start_bus() {
+    impl_->note(Call::start_bus);
     if (!impl_->body.armed.load(std::memory_order_relaxed)) impl_->outputs_laid_out.store(false, std::memory_order_release);
     impl_->body.bus.start();
 }
-void Machine::stop_bus() { impl_->body.bus.stop(); }
+void Machine::stop_bus() {
+    impl_->note(Call::stop_bus);
+    impl_->body.bus.stop();
+}
 void Machine::service(Instant now) {
-    service_bus(now);
-    service_programs();
-    service_disk(now);
+    impl_->note(Call::service, now);
+    impl_->service_bus(now);
+    impl_->programs.call_hooks();
+    impl_->service_disk(now);
     for (std::size_t i = 0; i < modbus_count(); ++i) service_modbus(i, now);
 }
 void Machine::service_bus(Instant now) {
-    impl_->body.bus.step(now);
-    impl_->lay_out_outputs();
-    impl_->drives.step(now);
-    impl_->programs.carry_requests();
+    impl_->note(Call::bus, now);
+    impl_->service_bus(now);
 }
-void Machine::service_programs() { impl_->programs.call_hooks(); }
-void Machine::service_disk(Instant now) {
-    if (impl_->retain) impl_->retain->step(now);
+void Machine::service_programs() {
+    impl_->note_beside(Call::programs);
+    impl_->programs.call_hooks();
 }
+void Machine::service_disk(Instant now) { impl_->service_disk(now); }
 std::size_t Machine::modbus_count() const noexcept { return impl_->modbus.count(); }
-void Machine::service_modbus(std::size_t device, Instant now) { impl_->modbus.step(device, now); }
+void Machine::service_modbus(std::size_t device, Instant now) {
+    if (!impl_->body.replayed) impl_->modbus.step(device, now);
+}
 bool Machine::end_modbus(std::size_t device, Instant now) { return impl_->modbus.finish(device, now); }
-Result<void> Machine::arm() { return impl_->arm(); }
+Result<void> Machine::arm() {
+    auto done = impl_->arm();
+    impl_->note(Call::arm, {}, done.ok() ? 1 : 0);
+    return done;
+}
 bool Machine::bus_operational() const noexcept { return bus().phase() == ecat::Master::Phase::operational; }
 std::optional<Error> Machine::bus_failure() const {
     if (bus().phase() == ecat::Master::Phase::failed) return bus().failure();
@@ -82,12 +91,19 @@ std::string Machine::program_fault(std::size_t program) const { return impl_->pr
 // --- cycle ------------------------------------------------------------------------------------------------------------------
 
 void Machine::cycle(const CycleTick& tick) noexcept { impl_->cycle(tick); }
-void Machine::pump(Instant now) noexcept { impl_->body.bus.pump(now); }
+void Machine::pump(Instant now) noexcept {
+    impl_->note(Call::pump, now);
+    impl_->body.bus.pump(now);
+}
 void Machine::run_slow_tasks() noexcept {
     for (std::size_t i = 0; i < slow_task_count(); ++i) (void)run_slow_task(i);
 }
 std::size_t Machine::slow_task_count() const noexcept { return impl_->programs.slow_task_count(); }
-bool Machine::run_slow_task(std::size_t index) noexcept { return impl_->programs.run_slow_task(index); }
+bool Machine::run_slow_task(std::size_t index) noexcept {
+    const bool ran = impl_->programs.run_slow_task(index);
+    if (ran) impl_->note_beside(Call::slow_task, index);
+    return ran;
+}
 
 // --- between the two ----------------------------------------------------------------------------------------------------------
 
@@ -115,10 +131,15 @@ std::span<const RetainNote> Machine::retain_notes() const noexcept {
 }
 bool Machine::disk_at_work() const noexcept { return impl_->retain && impl_->retain->writing(); }
 MachinePhase Machine::phase() const noexcept { return impl_->body.phase.load(std::memory_order_acquire); }
-void Machine::record(Recorder& recorder) noexcept {
+void Machine::record(Recorder& recorder, RecordedThreads threads) {
+    impl_->outcome.begin();
     impl_->body.recorder = &recorder;
-    impl_->body.bus.set_tap(&record_frame, &recorder);
+    impl_->body.calls = &recorder;
+    impl_->body.threads_beside = threads == RecordedThreads::several;
+    impl_->body.wire.record(recorder);
+    record_wire(recorder, impl_->body.wire.mac(), impl_->body.wire.ring() != nullptr);
 }
+ReplayedInbox& Machine::replayed() noexcept { return impl_->replayed; }
 SignalRing& Machine::signals() noexcept { return impl_->rows.ring(); }
 const SignalRing& Machine::signals() const noexcept { return impl_->rows.ring(); }
 const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }

@@ -40,6 +40,12 @@ struct AlarmText {
     std::string manual{};  ///< of a drive's own alarm: its profile and the section of its manual, "sv33-e 5.4"
 };
 
+class ReplayedInbox;
+
+/// Who calls a recorded machine: one thread for everything (virtual time), or the cycle's thread for cycles, service_bus(), arm(), start_bus() and
+/// stop_bus(), and any others for the rest (RealtimeRunner::record_in_step()).
+enum class RecordedThreads : std::uint8_t { several, one };
+
 class Machine {
 public:
     /// Checks everything, loads the programs, takes all memory. `transport` outlives the machine. All problems at once.
@@ -132,9 +138,11 @@ public:
     /// cycles count as Snapshot::cycle.
     [[nodiscard]] SignalRing& signals() noexcept;
     [[nodiscard]] const SignalRing& signals() const noexcept;
-    /// Before start_bus(): everything that comes from outside goes into `recorder` (runtime/recording/inbox_record.hpp says how), written by
-    /// the cycle thread. `recorder` outlives the machine. Off unless called; real-time safe.
-    void record(Recorder& recorder) noexcept;
+    /// Before start_bus(): everything that comes from outside goes into `recorder` (runtime/recording/inbox_record.hpp says how), and what each
+    /// cycle makes of it (outcome_record.hpp), written by the cycle thread. `recorder` outlives the machine. Off unless called.
+    void record(Recorder& recorder, RecordedThreads threads = RecordedThreads::several);
+    /// For who replays a recording (runtime/replay/): where it goes in again.
+    [[nodiscard]] ReplayedInbox& replayed() noexcept;
     /// Times per step (Step order), for benchmarks and the monitor. Read by the cycle thread, or when it stands.
     [[nodiscard]] const StepStatistics<step_count - 1>& step_statistics() const noexcept;
     void reset_step_statistics() noexcept;

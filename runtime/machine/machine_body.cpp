@@ -48,7 +48,8 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
 MachineBody::MachineBody(MachineConfig machine, ecat::Transport& transport)
     : config(std::move(machine)),
       bus_config(bus_of(config)),
-      bus(transport, bus_config),
+      wire(transport),
+      bus(wire, bus_config),
       io(config.io, config.cycle),
       kept(kept_points(config, io)),
       views(config.axes.size()),

@@ -14,6 +14,7 @@
 #include "runtime/machine/alarm_log.hpp"
 #include "runtime/machine/kept_points.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/recording/recorded_transport.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/tasks/io_image.hpp"
 #include "runtime/tasks/watched_requests.hpp"
@@ -32,6 +33,7 @@ struct MachineBody {
 
     const MachineConfig config;
     const ecat::BusConfig bus_config;  // config.bus, and what the axes need of the bus beyond it
+    RecordedTransport wire;
     ecat::Master bus;
     IoImage io;
     const KeptPoints kept;
@@ -40,7 +42,11 @@ struct MachineBody {
     std::vector<axes::Axis> axes;       // built by MachineDrives
     WatchedRequests requests;           // of operators; of programs through theirs
     AlarmLog log;
-    Recorder* recorder = nullptr;
+    Recorder* recorder = nullptr;  // of what the cycle takes, and what it makes of it; nullptr: nobody records
+    Recorder* calls = nullptr;     // likewise, of what the cycle's thread does between two cycles
+    bool threads_beside = false;   // start() and stop() of programs and slower tasks have threads of their own
+
+    bool replayed = false;  // what comes from outside comes from a recording: nobody else is asked
 
     // the cycle's
     Instant now{};                                            // Machine

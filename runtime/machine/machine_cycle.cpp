@@ -39,6 +39,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       programs(body, hands, errors),
       desk(body, hands, measuring, programs),
       supervisor(body, drives, groups, modbus, programs, desk, retain.get()),
+      outcome(body, drives),
+      replayed(body, programs, desk, drives.serial(), modbus, supervisor),
       snapshots(body, measuring, programs),
       layout(layout_of(body, drives, programs.host())),
       rows(body, programs, layout),
@@ -71,6 +73,13 @@ Result<void> Machine::Impl::arm() {
     return {};
 }
 
+void Machine::Impl::service_bus(Instant now) {
+    body.bus.step(now);
+    lay_out_outputs();
+    drives.step(now);
+    programs.carry_requests();
+}
+
 void Machine::Impl::lay_out_outputs() {
     using Phase = ecat::Master::Phase;
     const auto at = body.bus.phase();
@@ -94,6 +103,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
 
     if (runs) compute(tick);
     else wait_for_bus(tick);
+    if (body.recorder != nullptr) outcome.record(tick.scheduled, runs);
 
     if (!at_tick) body.bus.send(tick.scheduled);
     done(Step::send);

@@ -16,10 +16,13 @@
 #include "runtime/machine/measuring.hpp"
 #include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
+#include "runtime/machine/outcome_recorder.hpp"
 #include "runtime/machine/program_runner.hpp"
+#include "runtime/machine/replayed_inbox.hpp"
 #include "runtime/machine/row_writer.hpp"
 #include "runtime/machine/snapshot_writer.hpp"
 #include "runtime/machine/supervisor.hpp"
+#include "runtime/recording/outcome_record.hpp"
 #include "runtime/retain/retain_keeper.hpp"
 
 namespace taktwerk::runtime {
@@ -39,6 +42,18 @@ struct Machine::Impl {
     void reset_statistics() noexcept;
     /// What was kept into variables and parameters.
     void restore_values();
+    /// What is done beside the cycle, where it is recorded.
+    void note(Call call, Instant now = {}, std::size_t index = 0) noexcept {
+        if (body.calls != nullptr) record_call(*body.calls, call, now, static_cast<std::uint16_t>(index));
+    }
+    /// The same of what may have a thread of its own: then the cycle records that it was done.
+    void note_beside(Call call, std::size_t index = 0) noexcept {
+        if (!body.threads_beside) note(call, {}, index);
+    }
+    void service_bus(Instant now);
+    void service_disk(Instant now) {
+        if (retain && !body.replayed) retain->step(now);
+    }
     void done(Step step) noexcept { steps.done(static_cast<std::size_t>(step)); }
 
     Result<void> arm();
@@ -55,6 +70,8 @@ struct Machine::Impl {
     ProgramRunner programs;
     OperatorDesk desk;
     Supervisor supervisor;
+    OutcomeRecorder outcome;
+    ReplayedInbox replayed;
     SnapshotWriter snapshots;
     MachineLayout layout;
     RowWriter rows;

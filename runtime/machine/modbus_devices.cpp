@@ -63,6 +63,23 @@ ModbusDevices::ModbusDevices(MachineBody& body, const std::vector<modbus::tcp::E
     }
 }
 
+bool ModbusDevices::replay(std::uint16_t device, std::uint16_t request, const Poller::RequestState& state) {
+    if (device >= devices_.size() || request >= devices_[device]->replayed.requests.size()) return false;
+    devices_[device]->replayed.requests[request] = state;
+    return devices_[device]->replay_is_new = true;
+}
+
+bool ModbusDevices::replay_word(std::uint16_t device, std::uint16_t channel, std::int64_t word) {
+    if (device >= devices_.size() || channel >= devices_[device]->replayed.words.size()) return false;
+    devices_[device]->replayed.words[channel] = word;
+    return devices_[device]->replay_is_new = true;
+}
+
+void ModbusDevices::publish_replayed() {
+    for (auto& device : devices_)
+        if (std::exchange(device->replay_is_new, false)) device->poller.replay(device->replayed);
+}
+
 void ModbusDevices::read() noexcept {
     for (std::size_t d = 0; d < devices_.size(); ++d) {
         auto& device = *devices_[d];

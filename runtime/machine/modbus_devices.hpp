@@ -25,6 +25,12 @@ public:
     /// One write of outputs that changed, at the end; false: nothing is left.
     [[nodiscard]] bool finish(std::size_t device, Instant now) { return devices_[device]->poller.finish(now); }
 
+    /// For a replay, in the place of step(): what the requests came to and the words that were read; all of a cycle at once. False: there is no
+    /// such device, request or channel.
+    [[nodiscard]] bool replay(std::uint16_t device, std::uint16_t request, const modbus::tcp::DevicePoller::RequestState& state);
+    [[nodiscard]] bool replay_word(std::uint16_t device, std::uint16_t channel, std::int64_t word);
+    void publish_replayed();
+
     // --- cycle: real-time safe -------------------------------------------------------------------------------------------------------
     /// Before the inputs are read.
     void read() noexcept;
@@ -52,7 +58,10 @@ private:
     };
     struct Device {
         Device(const modbus::tcp::DeviceConfig& config, modbus::tcp::Exchange& exchange, std::vector<std::int64_t> first)
-            : poller(config, exchange, first), words(std::move(first)), recorded(poller.requests().size()) {}
+            : poller(config, exchange, first),
+              words(std::move(first)),
+              recorded(poller.requests().size()),
+              replayed{std::vector<std::int64_t>(words.size()), recorded} {}
         Poller poller;
         const Poller::Report* report = nullptr;
         std::vector<InputPlace> inputs;
@@ -60,6 +69,8 @@ private:
         std::vector<std::int64_t> words;  // for the outputs
         std::vector<Poller::RequestState> recorded;
         std::optional<Instant> since;  // watched
+        Poller::Report replayed;
+        bool replay_is_new = false;
     };
     [[nodiscard]] bool too_old(const Device& device, std::size_t request) const noexcept;
     void record(std::uint16_t index, Device& device) noexcept;

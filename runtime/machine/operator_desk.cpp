@@ -11,15 +11,6 @@ namespace {
 
 constexpr std::size_t inbox_size = 64;
 
-OperatorAction action_of(StopLevel level) noexcept {
-    switch (level) {
-        case StopLevel::stop: return OperatorAction::stop;
-        case StopLevel::release_jog: return OperatorAction::jog;
-        case StopLevel::shutdown: break;
-    }
-    return OperatorAction::shutdown;
-}
-
 }  // namespace
 
 OperatorDesk::OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, ProgramRunner& programs)
@@ -44,14 +35,10 @@ StopLevels::Ticket OperatorDesk::request_shutdown() noexcept {
     return levels_.shutdown();
 }
 
-// One place for what comes from outside: a level is recorded as the command that it is. Nobody waits for an answer in the ring.
+// One place for what comes from outside. Nobody waits for an answer in the ring.
 void OperatorDesk::take_levels(Instant at) noexcept {
     levels_.take([&](StopLevel what, std::uint16_t axis, std::uint64_t number) {
-        OperatorCommand command;
-        command.axis = axis;
-        command.sequence = number;
-        command.action = action_of(what);
-        if (body_.recorder) record_command(*body_.recorder, at, command);
+        if (body_.recorder) record_level(*body_.recorder, at, what, axis, number);
         if (what == StopLevel::shutdown) {
             shutdown_taken_ = true;
             return;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/recording/inbox_record.hpp"
 #include "runtime/stop_levels.hpp"
 #include "runtime/tasks/code_at_work.hpp"
 
@@ -75,7 +76,7 @@ void ProgramRunner::build_tasks() {
             {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
                                         body_.tables, values_.count_of(i), std::move(kept)),
-             i, 0, std::move(shows), std::move(keeps)});
+             i, 0, true, std::move(shows), std::move(keeps)});
     }
 }
 
@@ -132,7 +133,21 @@ void ProgramRunner::learn_outputs() noexcept {
     for (auto& slow : slow_tasks_) slow.task->learn_outputs(body_.io.output_bits(), body_.io.output_lines());
 }
 
-void ProgramRunner::take_answers() noexcept { objects_.take_answers(body_.recorder, body_.now); }
+void ProgramRunner::take_answers() noexcept {
+    auto* recorder = body_.threads_beside ? body_.recorder : nullptr;  // else they are calls
+    for (std::size_t p = 0; p < programs_.size(); ++p)
+        programs_[p].hook.take([&](Handshake asked, Handshake next) {
+            if (recorder != nullptr) record_hook(*recorder, body_.now, static_cast<std::uint16_t>(p), asked == Handshake::stop_asked);
+            programs_[p].handshake.compare_exchange_strong(asked, next, std::memory_order_acq_rel);
+        });
+    for (std::size_t i = 0; i < slow_tasks_.size(); ++i) {
+        auto& slow = slow_tasks_[i];
+        if (slow.finished || !slow.task->finished()) continue;
+        slow.finished = true;
+        if (recorder != nullptr) record_slow(*recorder, body_.now, static_cast<std::uint16_t>(i));
+    }
+    objects_.take_answers(body_.recorder, body_.now);
+}
 
 bool ProgramRunner::start(std::size_t program, std::uint64_t after) noexcept {
     auto& record = programs_[program];
@@ -240,6 +255,11 @@ void ProgramRunner::take_handshakes() noexcept {
     }
 }
 
+bool ProgramRunner::slow_tasks_at_rest(std::size_t program) const noexcept {
+    return std::all_of(slow_tasks_.begin(), slow_tasks_.end(),
+                       [&](const SlowPlace& slow) { return slow.task->program() != program || slow.finished; });
+}
+
 bool ProgramRunner::slow_tasks_finished(std::size_t program) const noexcept {
     return std::all_of(slow_tasks_.begin(), slow_tasks_.end(),
                        [&](const SlowPlace& slow) { return slow.task->program() != program || slow.task->finished(); });
@@ -251,9 +271,20 @@ void ProgramRunner::tell_fault(std::size_t program, std::string words) {
 }
 
 void ProgramRunner::call_hook(std::size_t p) {
+    const auto asked = programs_[p].handshake.load(std::memory_order_acquire);
+    if (asked == Handshake::start_asked || (asked == Handshake::stop_asked && slow_tasks_finished(p)))
+        if (!programs_[p].hook.waits_for(asked)) run_hook(p, asked);
+}
+
+bool ProgramRunner::replay_hook(std::size_t program, bool stop) {
+    if (program >= programs_.size() || !host_.programs()[program].instance) return false;
+    run_hook(program, stop ? Handshake::stop_asked : Handshake::start_asked);
+    return true;
+}
+
+void ProgramRunner::run_hook(std::size_t p, Handshake asked) {
     auto& record = programs_[p];
     auto& loaded = host_.programs()[p];
-    auto asked = record.handshake.load(std::memory_order_acquire);
     auto next = asked;
     try {
         if (asked == Handshake::start_asked) {
@@ -261,7 +292,7 @@ void ProgramRunner::call_hook(std::size_t p) {
             next = Handshake::started;
             const HookAtWork hook{at_hooks_, p, loaded.config.name.c_str(), "start()"};
             loaded.instance->start();
-        } else if (asked == Handshake::stop_asked && slow_tasks_finished(p)) {
+        } else {
             // Written by the cycle before it asked; a program stopped by a person leaves it as it was.
             if (const auto why = record.fault.text(); !why.empty()) tell_fault(p, std::string(why));
             next = Handshake::none;
@@ -274,7 +305,7 @@ void ProgramRunner::call_hook(std::size_t p) {
         tell_fault(p, std::string(asked == Handshake::start_asked ? "start() threw: " : "stop() threw: ") + std::string(why.text()));
         next = Handshake::failed;
     }
-    if (next != asked) record.handshake.compare_exchange_strong(asked, next, std::memory_order_release);
+    record.hook.put(asked, next);
 }
 
 void ProgramRunner::call_hooks() {

@@ -26,7 +26,7 @@ public:
     ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<Error>& errors);
 
     // --- cycle: real-time safe ---------------------------------------------------------------------------------------------------
-    /// Answers of drives to the programs' object requests.
+    /// What came from beside the cycle: start() and stop() that have ended, slower tasks, answers of drives to the programs' object requests.
     void take_answers() noexcept;
     /// Step 6: base tasks run here, inline; slower ones are applied and released.
     void run_tasks() noexcept;
@@ -77,6 +77,8 @@ public:
     // --- other threads -----------------------------------------------------------------------------------------------------------
     /// start() and stop() that were asked for.
     void call_hooks();
+    /// For a replay: that one has run. False: there is no such program.
+    [[nodiscard]] bool replay_hook(std::size_t program, bool stop);
     /// Object requests on their way to the drives. Service side.
     void carry_requests() { objects_.step(body_.bus); }
     [[nodiscard]] std::size_t slow_task_count() const noexcept { return slow_tasks_.size(); }
@@ -101,6 +103,7 @@ private:
         std::unique_ptr<SlowTask> task;
         std::size_t place = 0;
         std::uint16_t overruns = 0;      // in a row
+        bool finished = true;            // as the cycle knows it
         std::vector<std::size_t> shows;  // the variables that are read after its runs
         std::vector<std::size_t> keeps;  // what is kept of its memory: places in host_.retained()
     };
@@ -116,6 +119,9 @@ private:
     void release_outputs_of(std::size_t program, bool others_run) noexcept;
     [[nodiscard]] bool slow_tasks_finished(std::size_t program) const noexcept;
     void call_hook(std::size_t program);
+    void run_hook(std::size_t program, Handshake asked);
+    /// As of this cycle.
+    [[nodiscard]] bool slow_tasks_at_rest(std::size_t program) const noexcept;
     void tell_fault(std::size_t program, std::string words);
     // program_tasks.cpp
     void run_base_task(BaseTask& base) noexcept;

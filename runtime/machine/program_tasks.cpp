@@ -71,7 +71,7 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     if (runs) task.renew(program.requests);
     if (!task.due(body_.cycles)) return;
     auto& numbers = task_statistics_[slow.place];
-    if (!task.finished()) {
+    if (!slow.finished) {
         ++numbers.overruns;
         if (slow.overruns < 0xFFFF) ++slow.overruns;
         return;
@@ -95,6 +95,7 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     CycleContext context;
     context.now = body_.now;
     context.period = body_.config.cycle;
+    slow.finished = false;
     task.release(context, body_.views, {io.inputs(), io.input_values()}, io.outputs(), host_.parameters(), alarms);
 }
 
@@ -102,7 +103,7 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
 void ProgramRunner::write_values_at_rest() noexcept {
     for (std::size_t p = 0; p < programs_.size(); ++p) {
         const auto& program = programs_[p];
-        if (program.running() || program.handshake.load(std::memory_order_acquire) != Handshake::none || !slow_tasks_finished(p)) continue;
+        if (program.running() || program.handshake.load(std::memory_order_acquire) != Handshake::none || !slow_tasks_at_rest(p)) continue;
         if (!values_.apply_at_rest(p, variable_values_)) continue;
         for (auto& slow : slow_tasks_)
             if (slow.task->program() == p) slow.task->show_variables();
@@ -180,7 +181,7 @@ void ProgramRunner::read_retained() noexcept {
     const auto& items = host_.retained();
     const auto at_rest = [&](std::size_t p) {
         return !programs_[p].running() && programs_[p].handshake.load(std::memory_order_acquire) == Handshake::none &&
-               slow_tasks_finished(p);
+               slow_tasks_at_rest(p);
     };
     for (std::size_t i = 0; i < items.size(); ++i) {
         const auto p = items[i].program;

@@ -6,7 +6,7 @@
 
 #include "axes/drives/xp200/line_codes.hpp"
 #include "axes/drives/xp200/xp200_drive.hpp"
-#include "runtime/recording/inbox_record.hpp"
+#include "runtime/recording/outcome_record.hpp"
 
 namespace taktwerk::runtime {
 
@@ -67,6 +67,7 @@ std::unique_ptr<axes::DrivePort> SerialDrives::drive_of(std::size_t axis) {
 }
 
 void SerialDrives::step(Instant now) {
+    if (body_.replayed) return;
     for (auto& line : lines_)
         if (line) line->step(now);
 }
@@ -109,6 +110,21 @@ void SerialDrives::record() noexcept {
         drives_[i].recorded = sample.revision;
         record_sample(*body_.recorder, body_.now, static_cast<std::uint16_t>(i), sample);
     }
+}
+
+void SerialDrives::record_wishes() noexcept {
+    for (std::size_t i = 0; i < drives_.size(); ++i) {
+        const auto& wish = drives_[i].drive->wish();
+        if (wish.sequence == drives_[i].wish) continue;
+        drives_[i].wish = wish.sequence;
+        record_wish(*body_.recorder, body_.now, static_cast<std::uint16_t>(i), wish);
+    }
+}
+
+bool SerialDrives::replay(std::uint16_t drive, const axes::xp200::Sample& sample) noexcept {
+    if (drive >= drives_.size()) return false;
+    drives_[drive].drive->replay(sample);
+    return true;
 }
 
 }  // namespace taktwerk::runtime

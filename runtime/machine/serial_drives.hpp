@@ -23,6 +23,8 @@ public:
 
     /// Service side.
     void step(Instant now);
+    /// In the place of a line: what a recording has. False: there is no such drive.
+    [[nodiscard]] bool replay(std::uint16_t drive, const axes::xp200::Sample& sample) noexcept;
     /// " of line 'rs485' (/dev/ttyUSB0, 38400 baud, 8E1)"; for words, not real-time.
     [[nodiscard]] std::string line_of(std::size_t axis) const;
     [[nodiscard]] bool has_lines() const noexcept { return !lines_.empty(); }
@@ -30,6 +32,8 @@ public:
     // --- cycle ----------------------------------------------------------------------------------------------------------------
     /// What they have said since the last cycle, into the recording.
     void record() noexcept;
+    /// What they are asked for, where that is new.
+    void record_wishes() noexcept;
     /// Alarms of those that are silent or not ready for long.
     void watch() noexcept;
     /// The outputs that watch over the lines.
@@ -42,6 +46,7 @@ private:
         std::uint16_t axis = 0;
         std::uint8_t station = 0;
         std::uint32_t recorded = 0;  // number of the newest sample in the recording
+        std::uint32_t wish = 0;      // and of the newest wish
         Instant online{};            // last; before that since when it is waited for
         int watchdog = no_output;    // of io
     };

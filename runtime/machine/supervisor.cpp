@@ -79,8 +79,10 @@ void Supervisor::raise_retain() noexcept {
     if (!retain_) return;
     if (retain_->positions_lost()) body_.raise(MachineAlarm::positions_lost, AlarmSource::machine, 0);
     if (retain_->values_lost() && body_.cycles == 0) body_.raise(MachineAlarm::values_lost, AlarmSource::machine, 0);
-    if (retain_->outdated()) body_.raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0);
-    else if (retain_->failing() || retain_->hangs(body_.now)) body_.raise(MachineAlarm::retain_not_written, AlarmSource::machine, 0);
+    const auto disk = replayed_disk_.value_or(DiskSays{retain_->outdated(), retain_->failing() || retain_->hangs(body_.now)});
+    if (body_.recorder != nullptr && disk != recorded_disk_) record_disk(*body_.recorder, body_.now, recorded_disk_ = disk);
+    if (disk.outdated) body_.raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0);
+    else if (disk.failing) body_.raise(MachineAlarm::retain_not_written, AlarmSource::machine, 0);
 }
 
 void Supervisor::raise_inputs() noexcept {

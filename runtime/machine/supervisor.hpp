@@ -1,6 +1,7 @@
 #pragma once
 // Step 5: what holds is raised, the log decides what remains, the strongest reaction is carried out. Real-time safe.
 
+#include <optional>
 #include <vector>
 
 #include "runtime/cycle_tick.hpp"
@@ -15,6 +16,7 @@
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/machine/shutdown.hpp"
+#include "runtime/recording/inbox_record.hpp"
 #include "runtime/retain/retain_keeper.hpp"
 
 namespace taktwerk::runtime {
@@ -26,6 +28,9 @@ public:
                OperatorDesk& desk, const RetainKeeper* retain);
 
     void step(const CycleTick& tick) noexcept;
+
+    /// In the place of what the disk's thread says.
+    void replay(const DiskSays& says) noexcept { replayed_disk_ = says; }
 
     /// Any thread.
     [[nodiscard]] const BeforeFault& before_fault() const noexcept { return before_fault_; }
@@ -50,6 +55,8 @@ private:
     ProgramRunner& programs_;
     OperatorDesk& desk_;
     const RetainKeeper* retain_;
+    std::optional<DiskSays> replayed_disk_;
+    DiskSays recorded_disk_;
     EmergencyInputs emergency_inputs_;
     LateCycles late_cycles_;
     DriveEmergencies drive_emergencies_;

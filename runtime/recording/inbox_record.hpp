@@ -1,18 +1,24 @@
 #pragma once
 // What comes from outside, as bytes of a Recorder: the one recorded inbox (docs/architecture.md). Records stand in the order in which the
-// cycle took them: a tick, the frames received in it, the commands drained in it. Little-endian, written by the cycle thread.
+// cycle took them: a tick, the frames received in it, the commands drained in it. Little-endian, written by the cycle thread; inbox_reader.hpp
+// reads them. What the cycle makes of it: outcome_record.hpp.
 //
 //   tick     i64 scheduled ns, i64 woken ns, u32 missed                                        20 bytes
-//   frame    an Ethernet frame as it came in
-//   departure  nothing but its time: when a frame left, as the transport measured it (the servo follows it)
+//   frame    an Ethernet frame as it came in; half_frame: of one half of a broken ring alone
+//   departure  u64 hash of a frame that left, and as its time when that was, as the transport measured it (the servo follows it)
+//   refused  u64 hash of a frame that the link did not take
+//   link     u8 carrier, when it changes; ring: u8 shape, u16 before, u16 behind the break, u64 opened, u16 whole, when one of them changes
+//   level    u8 StopLevel, u16 axis, u64 number (stop_levels.hpp)
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
 //            then, of a measure alone: u8 kind, u16 count, f64 distance, velocity, acceleration, from, to, period   51 bytes
-//            A level (stop_levels.hpp) is a stop, a jog with velocity 0 or a shutdown of client 0; its number stands as sequence.
 //   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
 //   request  u16 Modbus device, u16 request, u8 fault, u8 exception, u8 ever succeeded, i64 sent ns   15 bytes
-//   channel  u16 Modbus device, u16 channel, i64 word: of the request before                     12 bytes
+//   channel  u16 Modbus device, u16 channel, i64 word: of the request before                   12 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
+//   disk     u8 what its thread says of it, when it changes (see DiskSays)
+//   hook     u16 program, u8 whether it was stop() and not start(): that has run on a thread of its own, and the cycle takes note of it
+//   slow     u16 slower task, whose run on a thread of its own has ended
 
 #include <algorithm>
 #include <array>
@@ -27,11 +33,14 @@
 #include "modbus/tcp/device_poller.hpp"
 #include "runtime/cycle_tick.hpp"
 #include "runtime/operator_command.hpp"
+#include "runtime/stop_levels.hpp"
 
 namespace taktwerk::runtime {
 
 inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4, departure_channel = 5,
-                               sample_channel = 6, modbus_request_channel = 7, modbus_word_channel = 8;
+                               sample_channel = 6, modbus_request_channel = 7, modbus_word_channel = 8, level_channel = 9,
+                               half_frame_channel = 10, refused_channel = 11, link_channel = 12, ring_channel = 13, disk_channel = 14,
+                               hook_channel = 22, slow_channel = 23;
 
 namespace inbox_record {
 template <std::size_t Size>
@@ -59,6 +68,14 @@ inline void record_tick(Recorder& recorder, const CycleTick& tick) noexcept {
     bytes.put(tick.woken);
     bytes.put(tick.missed);
     recorder.append(tick_channel, tick.scheduled, bytes.all());
+}
+
+inline void record_level(Recorder& recorder, Instant at, StopLevel level, std::uint16_t axis, std::uint64_t number) noexcept {
+    inbox_record::Bytes<11> bytes;
+    bytes.put(static_cast<std::uint8_t>(level));
+    bytes.put(axis);
+    bytes.put(number);
+    recorder.append(level_channel, at, bytes.all());
 }
 
 inline void record_command(Recorder& recorder, Instant at, const OperatorCommand& command) noexcept {
@@ -144,11 +161,30 @@ inline void record_channel(Recorder& recorder, Instant at, std::uint16_t device,
     recorder.append(modbus_word_channel, at, bytes.all());
 }
 
-/// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received; only when is news.
-inline void record_frame(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept {
-    auto& recorder = *static_cast<Recorder*>(context);
-    if (outgoing) recorder.append(departure_channel, at, {});
-    else recorder.append(frame_channel, at, frame);
+/// What the thread that writes what is kept says of its disk; the supervisor raises alarms by it.
+struct DiskSays {
+    bool outdated = false;  ///< RetainKeeper::outdated()
+    bool failing = false;   ///< failing() or hangs()
+    friend bool operator==(const DiskSays&, const DiskSays&) = default;
+};
+
+inline void record_disk(Recorder& recorder, Instant at, const DiskSays& says) noexcept {
+    inbox_record::Bytes<1> bytes;
+    bytes.put(static_cast<std::uint8_t>((says.outdated ? 1u : 0u) | (says.failing ? 2u : 0u)));
+    recorder.append(disk_channel, at, bytes.all());
+}
+
+inline void record_hook(Recorder& recorder, Instant at, std::uint16_t program, bool stop) noexcept {
+    inbox_record::Bytes<3> bytes;
+    bytes.put(program);
+    bytes.put(static_cast<std::uint8_t>(stop ? 1 : 0));
+    recorder.append(hook_channel, at, bytes.all());
+}
+
+inline void record_slow(Recorder& recorder, Instant at, std::uint16_t task) noexcept {
+    inbox_record::Bytes<2> bytes;
+    bytes.put(task);
+    recorder.append(slow_channel, at, bytes.all());
 }
 
 }  // namespace taktwerk::runtime

@@ -40,6 +40,7 @@ void RealtimeRunner::cycle_thread() {
         [this, &loop](const CycleTiming& timing) {
             if (world_) world_->apply_events(timing.scheduled);
             machine_.cycle({timing.scheduled, timing.woken, static_cast<std::uint32_t>(timing.missed)});
+            if (in_step_) in_step_->between_cycles();
             loop.shift_grid(machine_.bus().period_correction());
         },
         stop_);
@@ -110,19 +111,36 @@ Result<RealtimeReport> RealtimeRunner::start() {
 void RealtimeRunner::service() {
     next_service_ = std::max(next_service_ + service_period, clock_.now());
     clock_.sleep_until(next_service_);
-    machine_.service_bus(clock_.now());
+    if (!in_step_) machine_.service_bus(clock_.now());
+}
+
+bool RealtimeRunner::asked(const std::function<bool(Instant)>& keep_on) {
+    const auto mine = service_side();
+    return keep_on(clock_.now());
+}
+
+/// Where it has a thread of its own, that is the caller's.
+std::unique_lock<std::mutex> RealtimeRunner::service_side() { return in_step_ ? in_step_->look() : std::unique_lock<std::mutex>{}; }
+
+Result<void> RealtimeRunner::arm() {
+    if (!in_step_) return machine_.arm();
+    in_step_->arm();
+    while (!in_step_->armed()) service();
+    return *in_step_->armed();
 }
 
 Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) {
     next_service_ = clock_.now();
-    machine_.start_bus();
+    if (in_step_) in_step_->start_bus();
+    else machine_.start_bus();
     auto up = bring_up(keep_on);
     while (up && machine_.phase() != MachinePhase::stopped) {
         service();
-        if (!keep_on(clock_.now())) machine_.request_shutdown();
+        if (!asked(keep_on)) machine_.request_shutdown();
     }
     // However it ended: slaves are left in INIT, not to their watchdogs.
-    machine_.stop_bus();
+    if (in_step_) in_step_->stop_bus();
+    else machine_.stop_bus();
     const auto down = clock_.now() + bus_down_patience;
     while (machine_.bus().phase() != ecat::Master::Phase::stopped && clock_.now() < down) service();
     return up;
@@ -133,8 +151,12 @@ Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_o
     const auto until = clock_.now() + patience;
     while (!machine_.bus_operational()) {
         service();
-        if (auto failure = machine_.bus_failure()) return *failure;
-        if (!keep_on(clock_.now())) machine_.request_shutdown();
+        {
+            const auto mine = service_side();
+            if (auto failure = machine_.bus_failure()) return *failure;
+        }
+        if (!asked(keep_on)) machine_.request_shutdown();
+        const auto mine = service_side();
         if (machine_.phase() == MachinePhase::stopped)
             return Error{std::string(ended_early), "run",
                          fmt::format("ended: the bus was not operational yet; last: {}", machine_.bus_progress()),
@@ -144,7 +166,7 @@ Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_o
                          fmt::format("not operational after {:.0f} s; last: {}", to_seconds(patience), machine_.bus_progress()),
                          "look at the slave that this line names"};
     }
-    return machine_.arm();
+    return arm();
 }
 
 void RealtimeRunner::finish() {

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "core/result.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/run/end_watch.hpp"
+#include "runtime/run/in_step.hpp"
 #include "runtime/world/world.hpp"
 
 namespace taktwerk::runtime {
@@ -41,6 +43,11 @@ public:
     /// Whoever runs a machine ends the process here.
     std::function<void(const Error&)> give_up;
 
+    /// Before start(): bus scripts and the drives' services run on the cycle's thread, between two cycles, so that a recording (Machine::record(),
+    /// RecordedThreads::several) has them in their order. They are skipped while keep_on looks at the machine. Programs' start() and stop(), slower
+    /// tasks, Modbus devices and the disk keep their threads: of these the cycle records what it takes.
+    void record_in_step() { in_step_ = std::make_unique<InStep>(machine_, clock_); }
+
     /// Starts the threads; the report says what the system granted. Error when `realtime.required` and something was refused.
     [[nodiscard]] Result<RealtimeReport> start();
     /// `keep_on` is called about each millisecond on the calling thread; when it says no the axes stop, power goes off, the bus goes
@@ -59,6 +66,9 @@ private:
     void beside(const std::function<void(Instant)>& work);
     void watch_thread();
     void service();
+    [[nodiscard]] bool asked(const std::function<bool(Instant)>& keep_on);
+    [[nodiscard]] Result<void> arm();
+    [[nodiscard]] std::unique_lock<std::mutex> service_side();
     Result<void> bring_up(const std::function<bool(Instant)>& keep_on);
 
     Machine& machine_;
@@ -73,6 +83,7 @@ private:
     std::thread cycle_, watch_;
     std::vector<std::thread> tasks_, beside_;
     Instant next_service_{};
+    std::unique_ptr<InStep> in_step_;  // of a run that is recorded
 };
 
 }  // namespace taktwerk::runtime

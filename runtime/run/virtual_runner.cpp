@@ -16,6 +16,7 @@ void VirtualRunner::one_cycle() {
     machine_.cycle({now, now, 0});
     machine_.run_slow_tasks();
     machine_.service(now);
+    if (drain) drain();
     if (after_cycle) after_cycle(now);
 }
 

@@ -19,6 +19,8 @@ public:
 
     /// After each cycle, for whoever reads the trace, plays the operator, or checks something.
     std::function<void(Instant)> after_cycle;
+    /// Before that, for whoever takes a recording away (Machine::record()).
+    std::function<void()> drain;
 
     /// Bus into OP and machine armed. Fails with the bus' own words, or after `patience` and what many slaves take.
     [[nodiscard]] Result<void> bring_up(Duration patience = std::chrono::seconds{30});

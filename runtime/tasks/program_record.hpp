@@ -16,7 +16,35 @@ namespace taktwerk::runtime {
 /// `none` no task of the program runs, nothing reads its variables, and start() and stop() never run beside its tasks.
 ///   cycle    none -> start_asked    any -> stop_asked    started, failed -> none
 ///   service  start_asked -> started or failed    stop_asked -> none or failed, once its slower tasks have ended
+/// What the service side has come to it puts into HookAnswer; the next cycle makes it the handshake, so that the cycle has one place where it
+/// learns of it.
 enum class Handshake : std::uint8_t { none, start_asked, started, stop_asked, failed };
+
+/// From the service side to the next cycle: to what was asked, what came of it. One word.
+class HookAnswer {
+public:
+    /// Service side. Not while waits_for(asked).
+    void put(Handshake asked, Handshake next) noexcept {
+        word_.store(static_cast<std::uint16_t>(present | static_cast<unsigned>(asked) << 4 | static_cast<unsigned>(next)),
+                    std::memory_order_release);
+    }
+    /// Service side: it was answered already, and no cycle has come since.
+    [[nodiscard]] bool waits_for(Handshake asked) const noexcept {
+        const unsigned word = word_.load(std::memory_order_acquire);
+        return word != 0 && (word >> 4 & 0xFu) == static_cast<unsigned>(asked);
+    }
+    /// Cycle: `take(asked, next)` where there is one.
+    template <class Take>
+    void take(Take&& take) noexcept {
+        if (word_.load(std::memory_order_relaxed) == 0) return;
+        const unsigned word = word_.exchange(0, std::memory_order_acq_rel);
+        take(static_cast<Handshake>(word >> 4 & 0xFu), static_cast<Handshake>(word & 0xFu));
+    }
+
+private:
+    static constexpr unsigned present = 0x100;
+    std::atomic<std::uint16_t> word_{0};
+};
 
 struct ProgramRecord {
     ProgramRecord(axes::AxisRequests& axes, std::span<AxisClaims> claims, std::uint16_t program) : requests(axes, claims, program) {}
@@ -29,6 +57,7 @@ struct ProgramRecord {
 
     ProgramState state = ProgramState::stopped;
     std::atomic<Handshake> handshake{Handshake::none};
+    HookAnswer hook;
     std::uint64_t start_after = 0;       ///< stop levels raised when its start was given; 0: it starts by itself
     FaultText fault;                     ///< the cycle's; handed over with stop_asked
     TaskContext::Undeclared undeclared;  ///< what it uses without having declared it; since its start

@@ -154,5 +154,26 @@ TEST_F(FiveDrivesOnACable, AllHomeAndMoveFailComeBackAndEndWell) {
     EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
 }
 
+TEST_F(FiveDrivesOnACable, WhatWasRecordedInRealTimeIsReplayedInVirtualTime) {
+    Child slaves(cable.at_slaves({taktwerk, "sim", file(), "--nic", "twk1", "--serial", "rs485=" + line()}));
+    ASSERT_TRUE(slaves.says("slaves of 'five-drives'", 30s)) << slaves.text();
+    const std::string recording = folder / "run.twrec";
+    Child master(cable.at_master({taktwerk, "run", file(), "--record", recording}));
+    ASSERT_TRUE(master.says("running, automatic mode", 60s)) << master.text() << slaves.text();
+    ASSERT_TRUE(until([&](const Json& s) { return variable(s, "least_strokes") >= 1; }, 60s)) << seen << master.text();
+    slaves.say("drive-fault sv33 0x3130");
+    const double failures = variable(seen, "failures");
+    ASSERT_TRUE(until([&](const Json& s) { return variable(s, "failures") > failures; }, 60s)) << seen << master.text();
+    master.signal(SIGTERM);
+    EXPECT_EQ(master.wait(30s), exit_ok) << master.text();
+
+    // Nobody is at the other end of the cable any more, and nobody is asked.
+    slaves.signal(SIGTERM);
+    EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
+    std::string said;
+    EXPECT_EQ(run({taktwerk, "replay", recording, "--quiet"}, &said), exit_ok) << said;
+    EXPECT_THAT(said, HasSubstr("identical: "));
+}
+
 }  // namespace
 }  // namespace taktwerk::apps

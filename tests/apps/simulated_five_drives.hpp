@@ -11,6 +11,7 @@
 #include "apps/machine/load.hpp"
 #include "core/clock.hpp"
 #include "runtime/run/virtual_runner.hpp"
+#include "tests/machines/replay_check.hpp"
 
 namespace taktwerk::apps {
 
@@ -30,6 +31,7 @@ struct SimulatedFiveDrives {
         ASSERT_TRUE(std::holds_alternative<std::unique_ptr<runtime::Machine>>(built));
         machine = std::move(std::get<0>(built));
         runner.emplace(*machine, *world, clock);
+        replayed.watch(*machine, &*runner, clock.now());
     }
     void bring_up() {
         const auto up = runner->bring_up();
@@ -43,6 +45,7 @@ struct SimulatedFiveDrives {
 
     VirtualClock clock{Instant{}};
     std::unique_ptr<runtime::World> world;
+    runtime::testing::ReplayCheck replayed;
     std::unique_ptr<runtime::Machine> machine;
     std::optional<runtime::VirtualRunner> runner;
 };

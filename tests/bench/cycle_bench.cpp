@@ -1,8 +1,12 @@
-// What one cycle of a whole machine costs the cycle thread, step by step: 1, 8 and 64 CSP axes.
+// What one cycle of a whole machine costs the cycle thread, step by step: 1, 8 and 64 CSP axes. With --record once more, recorded as by `taktwerk run
+// --record` (docs/replay.md).
+
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "core/math.hpp"
+#include "core/recorder.hpp"
 #include "tests/bench/shuttle_machine.hpp"
 
 namespace {
@@ -11,11 +15,19 @@ using namespace taktwerk;
 
 double us(Duration d) { return static_cast<double>(d.count()) / 1000.0; }
 
-void run(std::size_t axes, int cycles) {
+void run(std::size_t axes, int cycles, bool record) {
+    Recorder recorder{std::size_t{32} << 20, Recorder::Policy::drop_newest};
+    std::uint64_t bytes = 0;
     bench::ShuttleMachine shuttle{axes};
     shuttle.build();
+    if (record) {
+        shuttle.machine().record(recorder, runtime::RecordedThreads::one);
+        constexpr std::size_t head = 20;  // of a record in a file
+        shuttle.between = [&] { recorder.drain([&](const RecordView& view) { bytes += head + view.bytes.size(); }); };
+    }
     shuttle.bring_up();
     shuttle.start();
+    bytes = 0;
     const double moving = shuttle.run(cycles);
     const auto& steps = shuttle.machine().step_statistics();
     fmt::print("\n{} axes, {} cycles, {:.0f} % of them in motion\n", axes, cycles, 100.0 * moving);
@@ -28,13 +40,17 @@ void run(std::size_t axes, int cycles) {
     };
     for (std::size_t i = 0; i < steps.size(); ++i) row(steps.name(i), steps.times(i));
     row("total", steps.total());
+    if (record) fmt::print("recorded: {} bytes a cycle, {} records lost\n", bytes / static_cast<std::uint64_t>(cycles), recorder.dropped());
 }
 
 }  // namespace
 
-int main() {
+int main(int count, char** arguments) {
     math::set_stepping_thread_float_environment();
     fmt::print("One cycle of a machine on the cycle thread; simulated slaves answer between the cycles.\n");
-    for (const std::size_t axes : {1, 8, 64}) run(axes, 20000);
+    const bool record = count > 1 && std::string_view(arguments[1]) == "--record";
+    for (const std::size_t axes : {1, 8, 64})
+        for (const bool recorded : {false, true})
+            if (!recorded || record) run(axes, 20000, recorded);
     return 0;
 }

@@ -3,6 +3,7 @@
 // frames. The simulated slaves work between the cycles, as they do on a wire, so that the figures are the controller's alone.
 
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -69,6 +70,7 @@ public:
         machine_->cycle({now_, now_, 0});
         wire_.deliver(now_ + period / 2);
         machine_->service(now_);
+        if (between) between();
     }
     /// Until every slave is in OP: the time of the machine that it took.
     Duration bring_up() {
@@ -96,6 +98,8 @@ public:
         }
         return static_cast<double>(moving) / static_cast<double>(asked);
     }
+    /// After each cycle, beside it.
+    std::function<void()> between;
     [[nodiscard]] runtime::Machine& machine() noexcept { return *machine_; }
     [[nodiscard]] const BetweenCycles& wire() const noexcept { return wire_; }
 

@@ -1,5 +1,7 @@
 // Any bytes as a recording: an error that names a place, or records that lie inside the file. Where the first byte is odd, the rest is
-// the head and the records of a file whose lengths and check sums are put right, for chance would not find those.
+// the head and the records of a file whose lengths and check sums are put right, for chance would not find those. Each record is then read as
+// what its channel makes it in a recording of a machine: what can be read is written again as the same bytes, and a file that the machine began
+// with has a name that leads nowhere else.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
 #include "core/recording_file.hpp"
+#include "runtime/recording/inbox_reader.hpp"
 
 using namespace taktwerk;
 
@@ -58,6 +61,43 @@ Bytes built(std::span<const std::byte> in) {
     return file;
 }
 
+/// `write(recorder, value)` of what was read gives the bytes that were read.
+template <class T, class Write>
+void same_again(std::span<const std::byte> bytes, const std::optional<T>& value, Write write) {
+    if (!value) return;
+    Recorder recorder{4096, Recorder::Policy::drop_newest};
+    write(recorder, *value);
+    std::size_t records = 0;
+    recorder.for_each([&](const RecordView& again) {
+        ++records;
+        if (!std::ranges::equal(again.bytes, bytes)) std::abort();
+    });
+    if (records != 1) std::abort();
+}
+
+void read_as_inbox(std::span<const std::byte> bytes) {
+    using namespace runtime;
+    const Instant at{};
+    same_again(bytes, read_tick(bytes), [](Recorder& r, const CycleTick& v) { record_tick(r, v); });
+    same_again(bytes, read_command(bytes), [&](Recorder& r, const OperatorCommand& v) { record_command(r, at, v); });
+    same_again(bytes, read_level(bytes), [&](Recorder& r, const LevelRecord& v) { record_level(r, at, v.level, v.axis, v.number); });
+    same_again(bytes, read_sample(bytes), [&](Recorder& r, const SampleRecord& v) { record_sample(r, at, v.drive, v.sample); });
+    same_again(bytes, read_request(bytes),
+               [&](Recorder& r, const RequestRecord& v) { record_request(r, at, v.device, v.request, v.state); });
+    same_again(bytes, read_word(bytes), [&](Recorder& r, const WordRecord& v) { record_channel(r, at, v.device, v.channel, v.word); });
+    same_again(bytes, read_disk(bytes), [&](Recorder& r, const DiskSays& v) { record_disk(r, at, v); });
+    same_again(bytes, read_call(bytes), [](Recorder& r, const CallRecord& v) { record_call(r, v.call, v.now, v.index); });
+    same_again(bytes, read_wire(bytes), [](Recorder& r, const WireRecord& v) { record_wire(r, v.mac, v.ring); });
+    same_again(bytes, read_hook(bytes), [&](Recorder& r, const HookRecord& v) { record_hook(r, at, v.program, v.stop); });
+    same_again(bytes, read_slow(bytes), [&](Recorder& r, const SlowRecord& v) { record_slow(r, at, v.task); });
+    (void)read_hash(bytes);
+    (void)read_link(bytes);
+    (void)read_ring(bytes);
+    for (std::size_t axis = 0; axis < bytes.size() / setpoint_bytes; ++axis) (void)read_setpoint(bytes, axis);
+    if (const auto file = read_start_file(bytes))
+        if (file->name.empty() || file->name.front() == '.' || file->name.find('/') != std::string::npos) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -80,6 +120,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             (record.bytes.data() < read->bytes.data() || record.bytes.data() + record.bytes.size() > read->bytes.data() + length))
             std::abort();
         carried += record.bytes.size();
+        read_as_inbox(record.bytes);
     }
     if (carried > length) std::abort();
     return 0;

@@ -14,6 +14,7 @@
 #include "runtime/world/world.hpp"
 #include "tests/ecat/tampered_cable.hpp"
 #include "tests/machines/plain_machine.hpp"
+#include "tests/machines/replay_check.hpp"
 #include "tests/runtime/drive_oracle.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -43,6 +44,7 @@ public:
         }
         machine = std::move(std::get<0>(built));
         runner = std::make_unique<VirtualRunner>(*machine, world, clock);
+        replayed.watch(*machine, runner.get(), clock.now());
         watch.resize(machine->layout().axes.size());
         for (const auto& binding : machine->config().axes) oracles.emplace_back(binding, machine->config().cycle);
         runner->after_cycle = [this](Instant) { each_cycle(); };
@@ -142,6 +144,7 @@ public:
     VirtualClock clock;
     World world;
     ecat::test::TamperedCable cable;
+    ReplayCheck replayed;
     std::unique_ptr<Machine> machine;
     std::unique_ptr<VirtualRunner> runner;
     std::vector<AxisWatch> watch;

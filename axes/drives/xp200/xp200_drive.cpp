@@ -171,6 +171,12 @@ void Xp200Drive::take(const modbus::Answer& answer, Instant now) {
     samples_.publish();
 }
 
+void Xp200Drive::replay(const Sample& sample) noexcept {
+    samples_.back() = sample;
+    samples_.back().revision = ++revision_;
+    samples_.publish();
+}
+
 ServiceTicket Xp200Drive::start(const modbus::Request& request) {
     const auto ticket = ++last_ticket_;
     if (!schedule_.queue({ticket, request})) return 0;

@@ -37,8 +37,11 @@ public:
 
     /// Real-time safe, cycle side: the line has been heard lately and the axis may move. What the watchdog output follows.
     [[nodiscard]] bool supervised(Instant now) const noexcept;
-    /// Cycle side: the newest sample, for the recording.
+    /// Cycle side, for the recording: the newest sample, and what is asked for.
     [[nodiscard]] const Sample& newest() const noexcept { return newest_; }
+    [[nodiscard]] const Wish& wish() const noexcept { return wish_; }
+    /// In the place of the line, where it is not asked: the drive says this.
+    void replay(const Sample& sample) noexcept;
 
 private:
     [[nodiscard]] double turns_per_minute(double counts_per_second) const noexcept {

@@ -10,6 +10,7 @@
 #include "config/machine_file/machine_loader.hpp"
 #include "runtime/run/virtual_runner.hpp"
 #include "runtime/world/world.hpp"
+#include "tests/machines/replay_check.hpp"
 
 namespace taktwerk::testing {
 
@@ -36,6 +37,7 @@ public:
         }
         machine_ = std::move(std::get<0>(built));
         runner_ = std::make_unique<runtime::VirtualRunner>(*machine_, *world_, clock_);
+        replayed_.watch(*machine_, runner_.get(), clock_.now());
         runner_->after_cycle = [this](Instant) {
             if (latest_ = machine_->latest(); latest_ != nullptr && each_cycle) each_cycle();
         };
@@ -112,6 +114,7 @@ public:
 private:
     VirtualClock clock_;
     std::unique_ptr<runtime::World> world_;
+    runtime::testing::ReplayCheck replayed_;
     std::unique_ptr<runtime::Machine> machine_;
     std::unique_ptr<runtime::VirtualRunner> runner_;
     const runtime::Snapshot* latest_ = nullptr;

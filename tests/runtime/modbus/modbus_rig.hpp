@@ -14,6 +14,7 @@
 #include "runtime/run/virtual_runner.hpp"
 #include "runtime/world/world.hpp"
 #include "tests/machines/plain_machine.hpp"
+#include "tests/machines/replay_check.hpp"
 #include "tests/modbus/tcp/scripted_device.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -63,6 +64,7 @@ public:
         }
         machine = std::move(std::get<0>(built));
         runner = std::make_unique<VirtualRunner>(*machine, world, clock);
+        replayed.watch(*machine, runner.get(), clock.now());
     }
     bool up() {
         const auto ok = runner->bring_up();
@@ -112,6 +114,7 @@ public:
     VirtualClock clock;
     World world;
     ScriptedDevice device;
+    ReplayCheck replayed;
     std::unique_ptr<Machine> machine;
     std::unique_ptr<VirtualRunner> runner;
 

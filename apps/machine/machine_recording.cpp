@@ -1,0 +1,103 @@
+#include "apps/machine/machine_recording.hpp"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "core/crc32.hpp"
+#include "programs/api/abi.hpp"
+#include "runtime/recording/outcome_record.hpp"
+#include "runtime/replay/recording_head.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string check_sum(std::uint32_t crc, std::size_t size) { return fmt::format("crc32 {:08x}, {} bytes", crc, size); }
+
+std::string check_sum_of(const std::string& path) {
+    struct Close {
+        void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+    };
+    const std::unique_ptr<std::FILE, Close> file{std::fopen(path.c_str(), "rbe")};
+    if (file == nullptr) return "not readable";
+    std::uint32_t crc = 0;
+    std::size_t size = 0;
+    std::array<std::byte, 65536> block;
+    while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get())) {
+        crc = crc32(std::span{block}.first(got), crc);
+        size += got;
+    }
+    return check_sum(crc, size);
+}
+
+/// The machine file may be called anything and stand anywhere; of the others the folder says what they are.
+std::string name_of(const fs::path& path, bool is_machine) {
+    return is_machine ? std::string("of the machine") : (path.parent_path().filename() / path.filename()).string();
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> facts_of(const std::string& machine_file, const config::FilesRead& files,
+                                                          const runtime::MachineConfig& config, bool simulated) {
+    std::vector<std::pair<std::string, std::string>> facts;
+    const auto add = [&facts](std::string_view prefix, const std::string& name, std::string value) {
+        facts.emplace_back(std::string(prefix) + name, std::move(value));
+    };
+    using namespace runtime::head_fact;
+    add(version, "", sdk_version);
+    add(binary, "", check_sum_of("/proc/self/exe"));
+    std::error_code unknown;
+    const auto absolute = fs::absolute(machine_file, unknown);
+    add("machine_file", "", unknown ? machine_file : absolute.string());
+    add("simulated", "", simulated ? "yes" : "no");
+    for (std::size_t i = 0; i < files.files().size(); ++i) {
+        const auto& file = files.files()[i];
+        add(file_prefix, name_of(file.path, i == 0), check_sum(file.crc, file.size));
+    }
+    for (const auto& program : config.programs)
+        if (!program.library.empty()) add(program_prefix, program.name, check_sum_of(program.library));
+    return facts;
+}
+
+MachineRecording::MachineRecording(RecordingWriter writer)
+    : writer_(std::move(writer)), recorder_(ring_bytes, Recorder::Policy::drop_newest) {}
+
+Result<std::unique_ptr<MachineRecording>> MachineRecording::create(const std::string& path, runtime::Machine& machine,
+                                                                   std::vector<std::pair<std::string, std::string>> facts, Instant start,
+                                                                   runtime::RecordedThreads threads) {
+    auto info = runtime::recording_info(machine.config(), start, threads);
+    info.facts.insert(info.facts.end(), std::make_move_iterator(facts.begin()), std::make_move_iterator(facts.end()));
+    auto writer = RecordingWriter::create(path, info);
+    if (!writer) return std::move(writer).error();
+    for (const auto& file : runtime::start_files(machine.config())) {
+        const auto record = runtime::start_file_record(file);
+        if (auto done = writer->write({runtime::start_file_channel, start, record}); !done) return done.error();
+    }
+    std::unique_ptr<MachineRecording> recording{new MachineRecording(std::move(writer).value())};
+    machine.record(recording->recorder_, threads);
+    return recording;
+}
+
+Result<void> MachineRecording::drain() {
+    const bool was_broken = broken_.has_value();
+    recorder_.drain([this](const RecordView& record) {
+        if (broken_) return;
+        if (auto done = writer_.write(record); !done) broken_ = done.error();
+    });
+    if (broken_ && !was_broken) return *broken_;
+    return {};
+}
+
+Result<void> MachineRecording::finish() {
+    (void)drain().ok();
+    if (broken_) return *broken_;
+    return writer_.finish(recorder_.dropped());
+}
+
+}  // namespace taktwerk::apps

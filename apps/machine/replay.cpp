@@ -1,0 +1,265 @@
+// taktwerk replay RECORDING [MACHINE]: a recording drives its machine again, without hardware, and what it makes of it is compared.
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/machine/load.hpp"
+#include "apps/machine/machine_log.hpp"
+#include "apps/machine/machine_recording.hpp"
+#include "apps/machine/trace_csv.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/count_text.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/json_text.hpp"
+#include "apps/terminal/print_error.hpp"
+#include "core/math.hpp"
+#include "core/nearest_name.hpp"
+#include "runtime/replay/recording_head.hpp"
+#include "runtime/replay/replay.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+using namespace runtime;
+
+struct ReplayOptions {
+    std::string recording, machine, trace, until;
+    std::vector<std::string> programs;
+    bool show = false, json = false, quiet = false;
+};
+
+const std::string* fact(const Recording& recording, std::string_view name) { return find_fact(recording.info, name); }
+
+int show(const Recording& recording) {
+    fmt::print("{}, {}{}\n\n", count_text(recording.size(), "record"), count_text(recording.bytes.size(), "byte"),
+               recording.complete ? "" : "; its end is missing: the recording process died");
+    for (const auto& [name, value] : recording.info.facts) fmt::print("  {:<28} {}\n", name, value);
+    std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> counts;
+    for (const auto& frame : recording.frames) {
+        auto& [records, bytes] = counts[recording.info.channels[frame.channel]];
+        ++records;
+        bytes += frame.length;
+    }
+    fmt::print("\n");
+    for (const auto& [name, count] : counts) fmt::print("  {:<28} {:>10} records {:>12} bytes\n", name, count.first, count.second);
+    return exit_ok;
+}
+
+/// A time of the recording, or the name of an alarm. CLI11 knows units, but an option has one type.
+std::optional<Duration> time_of(const std::string& text) {
+    static const std::map<std::string, double> units{{"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"", 1.0}};
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    const auto unit = units.find(end);
+    if (end == text.c_str() || unit == units.end() || !(number >= 0 && number * unit->second < 1e8)) return std::nullopt;
+    return from_seconds(number * unit->second);
+}
+
+/// NAME=FILE or, of a machine with one program, FILE alone.
+std::optional<Error> put_program(MachineConfig& config, const std::string& given) {
+    const auto equals = given.find('=');
+    const auto name = equals == std::string::npos ? std::string{} : given.substr(0, equals);
+    const auto file = equals == std::string::npos ? given : given.substr(equals + 1);
+    if (name.empty() && config.programs.size() != 1)
+        return Error{"usage.program", "--program", fmt::format("the machine has {} programs", config.programs.size()),
+                     "say which: --program NAME=FILE"};
+    for (auto& program : config.programs)
+        if (name.empty() || program.name == name) {
+            program.library = file;
+            program.entry = nullptr;
+            return std::nullopt;
+        }
+    std::vector<std::string> names;
+    for (const auto& program : config.programs) names.push_back(program.name);
+    const auto near = nearest_name(name, names);
+    return Error{"usage.program", "--program", fmt::format("the machine has no program '{}'", name),
+                 near.empty() ? "take a name of the machine file" : fmt::format("did you mean '{}'?", near)};
+}
+
+/// What is said while it goes, and at its end.
+class Report {
+public:
+    Report(const ReplayOptions& options, std::vector<std::string> others, bool informational)
+        : options_(options), others_(std::move(others)), informational_(informational) {}
+
+    void note(const ReplayDifference& difference, Instant start) {
+        if (std::ranges::find(signals_, difference.signal) != signals_.end()) return;
+        signals_.push_back(difference.signal);
+        if (signals_.size() <= most_told) differences_.push_back({difference, start});
+    }
+
+    int end(const Replay& replay, bool whole) const {
+        if (options_.json) return end_json(replay, whole);
+        for (const auto& other : others_) fmt::print("{}\n", other);
+        if (!whole) fmt::print("the recording has no end: the process that wrote it died. What is there was replayed.\n");
+        if (differences_.empty()) {
+            fmt::print("identical: {} ({} before the machine was up), {:.3f} s: every output byte, every set-point and every frame\n",
+                       count_text(replay.cycles(), "cycle"), replay.cycles_before(), to_seconds(replay.now() - replay.start()));
+            return exit_ok;
+        }
+        if (informational_)
+            fmt::print(
+                "with other programs, against the inputs of that day (open loop: what the machine would have answered to other outputs "
+                "is not known), {} differ in {}:\n",
+                count_text(signals_.size(), "signal"), count_text(replay.cycles(), "cycle"));
+        for (const auto& [difference, start] : differences_)
+            fmt::print("{}{}\n", informational_ ? "  " : "first difference: ", difference.text(start));
+        if (signals_.size() > differences_.size()) fmt::print("  and {} more\n", signals_.size() - differences_.size());
+        if (!informational_ && others_.empty())
+            fmt::print(
+                "taktwerk, the files of the machine and its programs are those that were recorded: this is a fault of taktwerk, or of a "
+                "program that does not do the same twice (a clock, a random number, a file that it reads). Please report the first.\n");
+        return informational_ ? exit_ok : exit_differs;
+    }
+
+private:
+    static constexpr std::size_t most_told = 20;
+    struct Told {
+        ReplayDifference difference;
+        Instant start;
+    };
+
+    int end_json(const Replay& replay, bool whole) const {
+        std::string out =
+            fmt::format("{{\"identical\":{},\"cycles\":{},\"cycles_before\":{},\"seconds\":{:.6f},\"complete\":{}", differences_.empty(),
+                        replay.cycles(), replay.cycles_before(), to_seconds(replay.now() - replay.start()), whole);
+        out += ",\"other\":[";
+        for (std::size_t i = 0; i < others_.size(); ++i) out += (i > 0 ? "," : "") + json_text(others_[i]);
+        out += "],\"differences\":[";
+        for (std::size_t i = 0; i < differences_.size(); ++i) {
+            const auto& d = differences_[i].difference;
+            out += fmt::format("{}{{\"cycle\":{},\"seconds\":{:.6f},\"signal\":{},\"recorded\":{},\"replayed\":{}}}", i > 0 ? "," : "",
+                               d.cycle, to_seconds(d.at - differences_[i].start), json_text(d.signal), json_text(d.recorded),
+                               json_text(d.replayed));
+        }
+        fmt::print("{}]}}\n", out);
+        return differences_.empty() || informational_ ? exit_ok : exit_differs;
+    }
+
+    const ReplayOptions& options_;
+    std::vector<std::string> others_;
+    bool informational_;
+    std::vector<std::string> signals_;
+    std::vector<Told> differences_;
+};
+
+bool stands(Machine& machine, const std::string& alarm) {
+    const auto* snapshot = machine.latest();
+    for (std::size_t i = 0; snapshot != nullptr && i < snapshot->alarm_count; ++i)
+        if (snapshot->alarms[i].standing && machine.describe(snapshot->alarms[i].fact).name == alarm) return true;
+    return false;
+}
+
+void say_state(Replay& replay) {
+    const auto* snapshot = replay.machine().latest();
+    if (snapshot == nullptr) return;
+    fmt::print("\ncycle {}, {:.6f} s\n", replay.cycles(), to_seconds(replay.now() - replay.start()));
+    const auto& axes = replay.machine().layout().axes;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const auto& view = snapshot->axes[i];
+        fmt::print("  axis {}: {}, set {:.6g} {}, actual {:.6g}, following error {:.6g}, {:.6g} {}/s\n", axes[i].name, name(view.state),
+                   view.set_position, axes[i].unit, view.actual_position, view.following_error, view.set_velocity, axes[i].unit);
+    }
+    for (std::size_t i = 0; i < snapshot->alarm_count; ++i) {
+        const auto words = replay.machine().describe(snapshot->alarms[i].fact);
+        fmt::print("  alarm {}: {} [{}]{}\n", words.source, words.english, words.name, snapshot->alarms[i].standing ? "" : " (over)");
+    }
+    const auto& outputs = replay.machine().layout().outputs;
+    for (std::size_t i = 0; i < outputs.size(); ++i) fmt::print("  output {} = {}\n", outputs[i], snapshot->outputs[i]);
+}
+
+int fail(const std::vector<Error>& errors, const std::vector<std::string>& others) {
+    print_errors(errors);
+    for (const auto& other : others) fmt::print(stderr, "{}\n", other);
+    return exit_bad_file;
+}
+
+int replay(const ReplayOptions& options) {
+    math::set_stepping_thread_float_environment();
+    auto loaded = load_recording(options.recording);
+    if (!loaded) return fail({loaded.error()}, {});
+    const Recording recording = std::move(loaded).value();
+    if (options.show) return show(recording);
+    const auto* written = fact(recording, "machine_file");
+    const auto file = !options.machine.empty() ? options.machine : written != nullptr ? *written : std::string{};
+    if (file.empty())
+        return fail({{"replay.not_of_a_machine", options.recording, "this recording does not say of which machine file it is",
+                      "give the machine file behind it"}},
+                    {});
+    const auto* simulated = fact(recording, "simulated");
+    const config::FilesRead files;
+    auto machine_file = load(file, simulated == nullptr || *simulated == "yes");
+    if (!machine_file) return exit_bad_file;
+    auto& config = machine_file->machine;
+    for (const auto& program : options.programs)
+        if (const auto wrong = put_program(config, program)) {
+            print_error(*wrong);
+            return exit_usage;
+        }
+    const RecordingInfo here{{}, facts_of(file, files, config, true)};
+    auto others = other_facts(recording.info, here);
+    const auto until = options.until.empty() ? std::nullopt : time_of(options.until);
+    auto made = Replay::make(std::move(config), recording);
+    if (const auto* errors = std::get_if<1>(&made)) return fail(*errors, others);
+    auto& replay = *std::get<0>(made);
+
+    std::unique_ptr<TraceCsv> trace;
+    if (!options.trace.empty()) {
+        auto created = TraceCsv::create(options.trace, replay.machine().signals(), replay.machine().layout());
+        if (!created) return fail({created.error()}, {});
+        trace = std::move(*created);
+        trace->count_from(replay.start());
+    }
+    MachineLog log{replay.machine(), replay.start(), options.json};
+    Report report{options, std::move(others), !options.programs.empty()};
+    bool reached = options.until.empty();
+    auto step = Replay::Step::more;
+    for (bool going = true; going;) {
+        step = replay.step();
+        if (step == Replay::Step::differs) report.note(*replay.difference(), replay.start());
+        going = step == Replay::Step::more || (step == Replay::Step::differs && !options.programs.empty());
+        if (trace) (void)trace->drain().ok();
+        if (!options.quiet) log.step(replay.now(), replay.machine().latest());
+        if (options.until.empty()) continue;
+        reached = until ? replay.now() - replay.start() >= *until : stands(replay.machine(), options.until);
+        going = going && !reached;
+    }
+    if (step == Replay::Step::malformed) return fail({*replay.error()}, {});
+    if (trace)
+        if (auto ok = trace->finish(); !ok) return fail({ok.error()}, {});
+    const int code = report.end(replay, recording.complete || step != Replay::Step::ended);
+    if (!options.until.empty() && !options.json) {
+        if (!reached)
+            fmt::print("`--until {}` was not reached: the recording ends at {:.3f} s\n", options.until,
+                       to_seconds(replay.now() - replay.start()));
+        say_state(replay);
+    }
+    return code;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("replay", "let a recording of `run --record` drive its machine again, and compare what comes of it");
+    auto options = std::make_shared<ReplayOptions>();
+    sub->add_option("RECORDING", options->recording, "file of `taktwerk run --record`")->required();
+    sub->add_option("MACHINE", options->machine, "machine file; default: the one that was recorded, where it stood then");
+    sub->add_option("--until", options->until,
+                    "stop at this time of the recording (12.5s), or when this alarm stands (drive_fault), and show the machine");
+    sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
+    sub->add_option("--program", options->programs,
+                    "with this program in the place of the recorded one: FILE.so, or NAME=FILE.so. What differs is told and is no failure");
+    sub->add_flag("--show", options->show, "say what is in the recording, and replay nothing");
+    sub->add_flag("--json", options->json, "events and result as JSON, one object a line");
+    sub->add_flag("--quiet", options->quiet, "say only the result");
+    sub->callback([&action, options] { action = [options] { return replay(*options); }; });
+}
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,169 @@
+// A run as a file, and again: the built command on machines of config/machines/ with their programs.
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/terminal/exit_code.hpp"
+#include "tests/apps/child.hpp"
+#include "tests/apps/machine_files.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string shipped = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/";
+
+class ReplayCommand : public ::testing::Test {
+protected:
+    ReplayCommand() {
+        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
+        folder_ = ::mkdtemp(pattern.data());
+    }
+    ~ReplayCommand() override { std::filesystem::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    static std::string text_of(const std::string& name) {
+        std::ifstream in(name, std::ios::binary);
+        std::ostringstream out;
+        out << in.rdbuf();
+        return out.str();
+    }
+    struct Outcome {
+        int code;
+        std::string text;
+    };
+    static Outcome command(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), taktwerk);
+        Child child(arguments);
+        const int code = child.wait(120s);
+        return {code, child.text()};
+    }
+    /// A recording of a machine of config/machines/.
+    void record(const std::string& machine, const std::string& duration) const {
+        const auto run = command({"run", shipped + machine, "--virtual-time", "--duration", duration, "--record", path("run.twrec"),
+                                  "--trace", path("run.csv"), "--quiet"});
+        ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
+    }
+    /// The same file elsewhere, with something replaced.
+    std::string altered(const std::string& machine, const std::string& from, const std::string& to) const {
+        auto text = text_of(shipped + machine);
+        const auto at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        if (at != std::string::npos) text.replace(at, from.size(), to);
+        std::filesystem::create_directories(folder_ + "/machines");
+        for (const char* data : {"drives", "devices"})
+            if (!std::filesystem::exists(path(data)))
+                std::filesystem::create_directory_symlink(std::filesystem::path(shipped) / ".." / data, path(data));
+        for (const auto& beside : std::filesystem::directory_iterator(shipped))
+            if (beside.path().extension() == ".svg")
+                std::filesystem::copy_file(beside.path(), folder_ + "/machines/" + beside.path().filename().string(),
+                                           std::filesystem::copy_options::overwrite_existing);
+        std::ofstream(path("machines/" + machine)) << text;
+        return path("machines/" + machine);
+    }
+
+    std::string folder_;
+};
+
+TEST_F(ReplayCommand, FiveDrivesOnABusAndALineWithProgramAndEventsAreIdentical) {
+    record("five-drives.yaml", "20s");
+
+    const auto replay = command({"replay", path("run.twrec"), "--trace", path("again.csv"), "--quiet"});
+
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, HasSubstr("identical: "));
+    // But for what was measured on this computer: times of tasks and steps are no signals of a trace.
+    EXPECT_EQ(text_of(path("again.csv")), text_of(path("run.csv")));
+    EXPECT_GT(text_of(path("run.csv")).size(), 1'000'000u);
+}
+
+TEST_F(ReplayCommand, AnotherMachineFileIsSaidAndTheFirstSignalNamed) {
+    record("demo.yaml", "5s");
+    ASSERT_EQ(command({"replay", path("run.twrec"), "--quiet"}).code, exit_ok);
+
+    const auto replay =
+        command({"replay", path("run.twrec"), altered("demo.yaml", "acceleration: 5000 mm/s2", "acceleration: 4000 mm/s2"), "--quiet"});
+
+    EXPECT_EQ(replay.code, exit_differs) << replay.text;
+    EXPECT_THAT(replay.text, HasSubstr("file of the machine is another one: crc32 "));
+    EXPECT_THAT(replay.text, HasSubstr("first difference: cycle "));
+    EXPECT_THAT(replay.text, HasSubstr("axis "));
+}
+
+TEST_F(ReplayCommand, UntilATimeShowsTheMachineAsItStoodThen) {
+    record("demo.yaml", "5s");
+
+    const auto replay = command({"replay", path("run.twrec"), "--until", "3s", "--quiet"});
+
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, HasSubstr(", 3.000"));
+    EXPECT_THAT(replay.text, HasSubstr("following error"));
+    EXPECT_THAT(command({"replay", path("run.twrec"), "--until", "drive_fault", "--quiet"}).text, HasSubstr("was not reached"));
+}
+
+TEST_F(ReplayCommand, WhatIsNoRecordingSaysWhatIsWrong) {
+    record("demo.yaml", "3s");
+    const auto whole = text_of(path("run.twrec"));
+    const auto expect = [&](const std::string& bytes, const std::string& words) {
+        std::ofstream(path("bad.twrec"), std::ios::binary) << bytes;
+        const auto replay = command({"replay", path("bad.twrec"), "--quiet"});
+        EXPECT_EQ(replay.code, exit_bad_file) << replay.text;
+        EXPECT_THAT(replay.text, HasSubstr(words));
+    };
+    expect("time_s,x\n0,1\n", "this is not a recording");
+    auto bytes = whole;
+    bytes[6] = static_cast<char>(bytes[6] + 1);  // version u16 behind "TWREC" 00h
+    expect(bytes, "format");
+    bytes = whole;
+    bytes[whole.size() / 2] = static_cast<char>(bytes[whole.size() / 2] ^ 0x10);
+    expect(bytes, "at byte ");
+    expect(whole.substr(0, 30), "the head is cut off");
+
+    // What a killed process leaves is replayed as far as it goes.
+    std::ofstream(path("cut.twrec"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+    const auto replay = command({"replay", path("cut.twrec"), "--quiet"});
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, HasSubstr("the recording has no end"));
+}
+
+TEST_F(ReplayCommand, WithWhatWasKeptTheRunBeginsAsItDid) {
+    // The second run finds what the first one kept.
+    for (const char* name : {"first.twrec", "second.twrec"}) {
+        const auto run = command({"run", shipped + "five-drives.yaml", "--virtual-time", "--duration", "6s", "--no-events", "--retain",
+                                  path("kept"), "--record", path(name), "--quiet"});
+        ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
+    }
+    std::filesystem::remove_all(path("kept"));
+
+    for (const char* name : {"first.twrec", "second.twrec"}) {
+        const auto replay = command({"replay", path(name), "--quiet"});
+        EXPECT_EQ(replay.code, exit_ok) << name << ": " << replay.text;
+        EXPECT_THAT(replay.text, HasSubstr("identical: "));
+    }
+    EXPECT_THAT(command({"replay", path("second.twrec"), "--show"}).text, HasSubstr("start_file"));
+    EXPECT_THAT(command({"replay", path("first.twrec"), "--show"}).text, Not(HasSubstr("start_file")));
+    EXPECT_FALSE(std::filesystem::exists(path("kept"))) << "a replay keeps nothing";
+}
+
+// Threads, a wake-up that is late, a clock that is nobody's: and yet the same again.
+TEST_F(ReplayCommand, ARunInRealTimeIsReplayedInVirtualTime) {
+    const auto file = altered("demo.yaml", "lcm: { enabled: true,", "socket: '" + path("socket") + "', lcm: { enabled: false,");
+    const auto run = command({"run", file, "--simulate", "--duration", "5s", "--record", path("run.twrec"), "--quiet"});
+    ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
+
+    const auto replay = command({"replay", path("run.twrec"), "--quiet"});
+
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, HasSubstr("identical: "));
+    EXPECT_THAT(command({"replay", path("run.twrec"), "--show"}).text, HasSubstr("hook"));
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
