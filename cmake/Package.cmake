@@ -41,9 +41,12 @@ foreach(component runtime hmi sdk)
   install(FILES "${package_files}/deb/copyright" "${deb}/changelog.gz" DESTINATION "${folder}" COMPONENT ${component})
 endforeach()
 
+install(FILES "${package_files}/deb/lintian-overrides" DESTINATION "${CMAKE_INSTALL_DATADIR}/lintian/overrides" RENAME taktwerk COMPONENT runtime)
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME taktwerk)
 set(CPACK_PACKAGE_VENDOR "Taktwerk")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package's own stands in the first line of its description
 set(CPACK_PACKAGE_CONTACT "Taktwerk developers <taktwerk@example.org>")
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -59,11 +62,11 @@ set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME taktwerk)
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "soft-PLC and motion runtime
- Turns a Linux industrial PC into a machine controller: a cyclic runtime with
- IEC 61131-3 and PLCopen function blocks, an EtherCAT master, CiA 402 axes.
- Machines are described in a YAML file and run as the service taktwerk@NAME.
- .
- Not safety-rated.")
+Turns a Linux industrial PC into a machine controller: a cyclic runtime with
+IEC 61131-3 and PLCopen function blocks, an EtherCAT master, CiA 402 axes.
+Machines are described in a YAML file and run as the service taktwerk@NAME.
+
+Not safety-rated.")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "adduser")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "taktwerk-hmi, gnuplot-nox, linux-image-rt-amd64")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${package_files}/deb/runtime/postinst;${package_files}/deb/runtime/prerm;${package_files}/deb/runtime/postrm")
@@ -72,8 +75,8 @@ set(CPACK_DEBIAN_HMI_PACKAGE_NAME taktwerk-hmi)
 set(CPACK_DEBIAN_HMI_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_HMI_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_HMI_DESCRIPTION "page of Taktwerk machines for a browser
- Overview, axes, scope, I/O, alarms, bus of the machines of this computer, in
- Chinese and English, served on loopback as the service taktwerk-hmi.")
+Overview, axes, scope, I/O, alarms, bus of the machines of this computer, in
+Chinese and English, served on loopback as the service taktwerk-hmi.")
 set(CPACK_DEBIAN_HMI_PACKAGE_DEPENDS "taktwerk (= ${PROJECT_VERSION}), adduser")
 set(CPACK_DEBIAN_HMI_PACKAGE_CONTROL_EXTRA "${package_files}/deb/hmi/postinst;${package_files}/deb/hmi/prerm;${package_files}/deb/hmi/postrm")
 
@@ -82,8 +85,8 @@ set(CPACK_DEBIAN_SDK_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_SDK_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_SDK_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_SDK_DESCRIPTION "headers for programs of Taktwerk machines
- What building programs and other people's HMIs takes: function blocks, the
- program interface, CMake support, LCM types with generated C++ headers.")
+What building programs and other people's HMIs takes: function blocks, the
+program interface, CMake support, LCM types with generated C++ headers.")
 set(CPACK_DEBIAN_SDK_PACKAGE_DEPENDS "g++, cmake")
 set(CPACK_DEBIAN_SDK_PACKAGE_SUGGESTS "taktwerk (= ${PROJECT_VERSION}), liblcm-dev")
 include(CPack)

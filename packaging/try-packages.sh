@@ -6,7 +6,7 @@ folder=$(cd "$1" && pwd)
 [[ $EUID -eq 0 ]] || { echo "try-packages: needs root" >&2 && exit 1; }
 [[ -n ${TRY_PACKAGES_ALONE:-} ]] || TRY_PACKAGES_ALONE=1 exec unshare --mount --pid --fork --kill-child "$0" "$@"
 
-root=$(mktemp -d)
+root=$(mktemp -d) && chmod 755 "$root"
 trap 'umount -R "$root/proc" "$root/dev" 2>/dev/null; rm -rf --one-file-system "$root"' EXIT
 step() { printf '%-72s' "$1"; }
 ok() { echo "ok"; }
@@ -44,12 +44,12 @@ ok
 
 step "its axes move, in virtual time"
 inside taktwerk run /usr/share/taktwerk/machines/demo.yaml --virtual-time --duration 20s --quiet --trace /log.csv || fail "run"
-moved=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "x.actual_position") c = i; next } c { if (NR == 2 || $c < low) low = $c; if (NR == 2 || $c > high) high = $c } END { print (high - low > 100) ? "yes" : "no: " low " to " high }' "$root/log.csv")
+moved=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if (index($i, "x.actual_position") == 1) c = i; next } c { if (NR == 2 || $c < low) low = $c; if (NR == 2 || $c > high) high = $c } END { print (high - low > 100) ? "yes" : "no: " low " to " high }' "$root/log.csv")
 [[ $moved == yes ]] || fail "x: $moved"
 ok
 
 step "as a service's user, in real time: ready, well, and ended in order"
-inside sh -c 'install -d -o taktwerk -g taktwerk /run/taktwerk && cp /usr/share/taktwerk/machines/demo.yaml /etc/taktwerk/'
+inside sh -c 'install -d -o taktwerk -g taktwerk /run/taktwerk && cp /usr/share/taktwerk/machines/demo.yaml /usr/share/taktwerk/machines/demo-cell.svg /etc/taktwerk/'
 inside setpriv --reuid taktwerk --regid taktwerk --init-groups --no-new-privs taktwerk run /etc/taktwerk/demo.yaml --simulate --no-events >"$root/run.log" 2>&1 &
 run=$!
 for ((i = 0; i < 300; i++)); do ! inside taktwerk status >"$root/log" 2>&1 || break; sleep 0.1; done
@@ -93,7 +93,7 @@ inside sh -c 'cmake -S /program -B /program/build && cmake --build /program/buil
 ok
 
 step "purged: no file is left"
-rm -rf "$root/program" "$root"/*.log "$root/log.csv" "$root/etc/taktwerk/demo.yaml" "$root/tmp/audit.jsonl"
+rm -rf "$root/program" "$root"/*.log "$root/log.csv" "$root"/etc/taktwerk/demo* "$root/tmp/audit.jsonl"
 inside sh -c 'apt-get purge -q -y taktwerk taktwerk-hmi taktwerk-dev && apt-get autoremove --purge -q -y' >"$root/log" 2>&1 || { tail -20 "$root/log" >&2; fail "purge"; }
 left=$(inside find / -xdev \( -path /proc -o -path /dev -o -path /packages -o -path /var/cache -o -path /var/lib/apt -o -path /log \) -prune -o -print | sort | comm -13 "$folder/before.txt" - | grep -i taktwerk || true)
 rm -f "$folder/before.txt"
