@@ -1,7 +1,7 @@
 # cmake --install BUILD --prefix P [--component runtime|hmi|sdk]
 #
 #   runtime  bin/taktwerk · share/taktwerk/{drives,machines} · lib/taktwerk/programs (the examples)
-#            share/taktwerk/schema (JSON Schema of machine and drive files, for editors) · share/taktwerk/lcm (the types of the channels)
+#            share/taktwerk/schema (JSON Schema of machine and drive files, for editors)
 #            share/doc/taktwerk (README, LICENSE, docs/ and the protocol of the socket, with their links to each other intact)
 #   hmi      share/taktwerk/hmi: the page, where it could be built
 #   sdk      include/taktwerk/ · lib/cmake/Taktwerk: what find_package(Taktwerk) needs to build programs elsewhere
@@ -26,8 +26,6 @@ foreach(folder drives devices machines)
 endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/schema" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
   FILES_MATCHING PATTERN "*.json")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/hmi_bridge/lcm" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
-  FILES_MATCHING PATTERN "*.lcm" PATTERN examples EXCLUDE)
 set(doc_folder "${CMAKE_INSTALL_DATAROOTDIR}/doc/taktwerk")  # Debian's name for it, not the project's capital
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${doc_folder}" COMPONENT runtime)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${doc_folder}" COMPONENT runtime)

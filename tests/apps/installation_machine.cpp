@@ -49,6 +49,10 @@ TEST(Installation, HoldsTheCommandItsDataTheTypesTheSchemasAndTheDocumentation) 
     EXPECT_GT(compared(source / "config/machines", share / "machines", ".yaml"), 0);
     EXPECT_GT(compared(source / "config/devices", share / "devices", ".yaml"), 100);
     EXPECT_EQ(compared(source / "config/schema", share / "schema", ".json"), 3) << "of a machine, a drive and a device";
+    // With the SDK, and only there: two packages must not own one file.
+    EXPECT_FALSE(fs::exists(share / "lcm"));
+    Child sdk({TAKTWERK_CMAKE, "--install", TAKTWERK_BINARY_DIR, "--component", "sdk", "--prefix", prefix.string()});
+    ASSERT_EQ(sdk.wait(120s), 0) << sdk.text();
     EXPECT_GE(compared(source / "hmi_bridge/lcm", share / "lcm", ".lcm"), 12) << "hmi_bridge/README.md names twelve types";
     EXPECT_GT(compared(source / "docs", doc / "docs"), 0);
     for (const char* page : {"README.md", "LICENSE", "hmi_bridge/README.md"})
