@@ -26,10 +26,10 @@
 #include "apps/machine/page_server.hpp"
 #include "apps/machine/recordings_folder.hpp"
 #include "apps/machine/run_files.hpp"
-#include "apps/machine/service_manager.hpp"
 #include "apps/machine/sim_hands.hpp"
 #include "apps/machine/status_line.hpp"
 #include "apps/machine/stop_signal.hpp"
+#include "apps/machine/systemd_link.hpp"
 #include "apps/machine/unfinished_run.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/count_text.hpp"
@@ -467,7 +467,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         else log.say(clock.now(), "page", begun.error().text());
     }
 
-    ServiceManager manager{[](const char* name) -> const char* { return std::getenv(name); }};
+    SystemdLink manager{[](const char* name) -> const char* { return std::getenv(name); }};
     StatusLine status;
     RealtimeRunner runner{machine, world};
     if (!options.record.empty()) {

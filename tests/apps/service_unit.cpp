@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/machine/journal.hpp"
-#include "apps/machine/service_manager.hpp"
+#include "apps/machine/systemd_link.hpp"
 #include "apps/machine/unfinished_run.hpp"
 #include "tests/apps/datagram_in.hpp"
 
@@ -38,8 +38,8 @@ struct Service : ::testing::Test {
         std::error_code ignored;
         std::filesystem::remove_all(folder, ignored);
     }
-    ServiceManager manager() {
-        return ServiceManager{[this](const char* name) -> const char* {
+    SystemdLink manager() {
+        return SystemdLink{[this](const char* name) -> const char* {
             const auto found = environment.find(name);
             return found == environment.end() ? nullptr : found->second.c_str();
         }};

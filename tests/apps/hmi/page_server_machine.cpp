@@ -103,8 +103,10 @@ TEST(PageInVirtualTime, IsRefused) {
 // bin/taktwerk finds the page where `cmake --install` puts it; PATH holds no node.
 TEST_F(PageBesideTheMachine, TheInstalledPackageCarriesItAndNeedsNoNode) {
     const auto prefix = std::filesystem::temp_directory_path() / ("taktwerk-page-" + std::to_string(::getpid()));
-    Child install({TAKTWERK_CMAKE, "--install", TAKTWERK_BINARY_DIR, "--component", "runtime", "--prefix", prefix.string()});
-    ASSERT_EQ(install.wait(120s), 0) << install.text();
+    for (const char* component : {"runtime", "hmi"}) {
+        Child install({TAKTWERK_CMAKE, "--install", TAKTWERK_BINARY_DIR, "--component", component, "--prefix", prefix.string()});
+        ASSERT_EQ(install.wait(120s), 0) << install.text();
+    }
     Child server({"/usr/bin/env", "-i", "PATH=/nowhere", (prefix / "bin" / "taktwerk").string(), "hmi", "--listen", "127.0.0.1:0",
                   "--audit", (prefix / "audit").string()});
     ASSERT_TRUE(server.says("the page: http://127.0.0.1:", 20s)) << server.text();

@@ -1,4 +1,4 @@
-#include "apps/machine/service_manager.hpp"
+#include "apps/machine/systemd_link.hpp"
 
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ std::optional<std::uint64_t> number(const char* text) {
 
 }  // namespace
 
-ServiceManager::ServiceManager(const Environment& environment) {
+SystemdLink::SystemdLink(const Environment& environment) {
     if (const char* socket = environment("NOTIFY_SOCKET"); socket != nullptr) out_ = DatagramOut{socket};
     const auto time = number(environment("WATCHDOG_USEC"));
     const auto process = number(environment("WATCHDOG_PID"));
@@ -34,7 +34,7 @@ ServiceManager::ServiceManager(const Environment& environment) {
         watchdog_ = std::chrono::microseconds{static_cast<std::int64_t>(*time)};
 }
 
-void ServiceManager::starting(Instant now, std::string_view text) {
+void SystemdLink::starting(Instant now, std::string_view text) {
     if (ready_) return;
     status(text);
     if (extended_once_ && now - extended_ < each_second) return;
@@ -43,19 +43,19 @@ void ServiceManager::starting(Instant now, std::string_view text) {
     out_.send(fmt::format("EXTEND_TIMEOUT_USEC={}", further / std::chrono::microseconds{1}));
 }
 
-void ServiceManager::ready() {
+void SystemdLink::ready() {
     if (ready_) return;
     ready_ = true;
     out_.send("READY=1");
 }
 
-void ServiceManager::status(std::string_view line) {
+void SystemdLink::status(std::string_view line) {
     if (!out_.open() || line == status_) return;
     status_ = line;
     out_.send("STATUS=" + on_one_line(status_));
 }
 
-void ServiceManager::alive(Instant now, std::uint64_t cycles) {
+void SystemdLink::alive(Instant now, std::uint64_t cycles) {
     if (!watchdog_ || cycles == cycles_ || (fed_once_ && now - fed_ < *watchdog_ / 4)) return;
     cycles_ = cycles;
     fed_ = now;
@@ -63,7 +63,7 @@ void ServiceManager::alive(Instant now, std::uint64_t cycles) {
     out_.send("WATCHDOG=1");
 }
 
-void ServiceManager::stopping() {
+void SystemdLink::stopping() {
     if (stopping_) return;
     stopping_ = true;
     out_.send("STOPPING=1");

@@ -14,12 +14,12 @@
 namespace taktwerk::apps {
 
 /// One thread.
-class ServiceManager {
+class SystemdLink {
 public:
     using Environment = std::function<const char*(const char*)>;
 
     /// From $NOTIFY_SOCKET, $WATCHDOG_USEC and $WATCHDOG_PID; without them everything here does nothing.
-    explicit ServiceManager(const Environment& environment);
+    explicit SystemdLink(const Environment& environment);
 
     [[nodiscard]] bool present() const noexcept { return out_.open(); }
     /// Its time for a sign of life; nothing: it wants none.
