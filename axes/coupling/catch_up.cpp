@@ -100,7 +100,10 @@ CatchUp::Step CatchUp::next(const MotionState& before, const GearDemand& gear, c
     double a = before.acceleration;
     const bool brakes = v * a < 0;
     const double room = brakes ? std::abs(v) : limits.room(v != 0 ? v : a) - std::abs(v);
-    const bool tight = keeps_sense && std::isfinite(bounds.jerk) && a * a > 2 * std::max(0.0, room) * bounds.jerk;
+    // Where the limit has come down on it, it is behind that end already, and brakes from where it is.
+    const bool beyond = room < 0;
+    if (beyond) a = 0;
+    const bool tight = keeps_sense && !beyond && std::isfinite(bounds.jerk) && a * a > 2 * room * bounds.jerk;
     const bool at_end = tight && 2 * room <= std::abs(a) * period;
     if (tight && !at_end) bounds.jerk = (1 + 1e-12) * a * a / (2 * room);
     a = given_up(v, a, unrest_.turn(), line, bounds.jerk, period);

@@ -98,5 +98,30 @@ TEST(CatchUp, AMasterThatOnlySeemsToTurnRoundTurnsNoSlaveRound) {
     }
 }
 
+// The velocity limit comes down on a slave that still speeds up, in the cycle in which its master gives up more acceleration than the slave has: the limit is
+// behind it, and no end that it could reach by losing its acceleration. It brakes, at most with its deceleration.
+TEST(CatchUp, ALimitThatComesDownOnTheSlaveIsNoStepOfItsVelocity) {
+    for (const double sense : {1.0, -1.0}) {
+        Slave slave(20'000);
+        EndlessMotion master{};
+        const auto step = [&](double velocity, double acceleration) {
+            master.velocity = master.trend = sense * velocity;
+            master.acceleration = sense * acceleration;
+            master.place.local += master.velocity * period;
+            const auto before = slave.state;
+            slave.state = slave.follower.step(master, {}, slave.state, {0, feed}, 1ms);
+            EXPECT_LE(std::abs(slave.state.velocity - before.velocity), 1000 * period * (1 + 1e-9)) << sense * before.velocity;
+            EXPECT_FALSE(slave.follower.in_sync());
+        };
+        for (int i = 0; i < 40; ++i) step(60, 400);
+        ASSERT_NEAR(sense * slave.state.velocity, 15, 2);  // on its way, and faster by the cycle
+        slave.limits.axis.velocity = slave.limits.forward = slave.limits.backward = 5;
+        slave.follower.set_limits(slave.limits);
+        step(60, -900);
+        for (int i = 0; i < 60; ++i) step(60, 0);
+        EXPECT_NEAR(sense * slave.state.velocity, 5, 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::catching_up
