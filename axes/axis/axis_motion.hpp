@@ -52,6 +52,11 @@ struct AxisMotion {
     [[nodiscard]] bool override_counts() const noexcept;
     /// Ramps only: what a velocity means depends on the kind of motion.
     [[nodiscard]] MotionLimits with_override(const MotionLimits& limits) const noexcept;
+    /// What holds the velocity of the base down. An override has no part in a stop, which may also be a velocity of 0.
+    [[nodiscard]] VelocityLimiter limiter() const noexcept {
+        const bool overridden = factors.velocity < 1 && goal.limiter != VelocityLimiter::stopping && override_counts();
+        return overridden ? VelocityLimiter::override_factor : goal.limiter;
+    }
     /// Whatever it is on its way to: the base is about to stop, or does.
     [[nodiscard]] bool base_comes_to_rest() const noexcept;
     [[nodiscard]] bool heads_backwards() const noexcept {

@@ -84,8 +84,7 @@ void PlainCycle::look(const AxisCore& axis) noexcept {
         if (body.queue.waiting() == 0) straight_ |= without_master;
         drifts_ = body.endless && cruises(body, motion);
         ends_ = motion.goal.kind != Goal::Kind::rest && !motion.setpoint.finished();
-        limiter_in_motion_ =
-            motion.factors.velocity < 1 && motion.override_counts() ? VelocityLimiter::override_factor : motion.goal.limiter;
+        limiter_in_motion_ = motion.limiter();
     }
 }
 

@@ -120,9 +120,7 @@ void ViewWriter::setpoint() noexcept {
     view_.set_acceleration = set.acceleration;
     view_.set_jerk = generator.jerk();
     view_.superimposed_covered = axis_.motion.addition.covered();
-    view_.limiter = generator.at_rest() && !motion.held                       ? VelocityLimiter::none
-                    : motion.factors.velocity < 1 && motion.override_counts() ? VelocityLimiter::override_factor
-                                                                              : motion.goal.limiter;
+    view_.limiter = generator.at_rest() && !motion.held ? VelocityLimiter::none : motion.limiter();
 }
 
 void ViewWriter::target(double place) noexcept { view_.target_position = axis_.body.units.to_program(place); }

@@ -1,6 +1,7 @@
 // MC_SetOverride. PLCopen Part 1 v2.0, section 3.18.
 
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -130,6 +131,24 @@ TEST(AxisOverride, TheOperatorsZeroHaltsAndTheMotionGoesOn) {
     EXPECT_EQ(rig.view().set_position, 100);
     EXPECT_EQ(rig.status(id), CommandStatus::done);
     EXPECT_LE(rig.largest_velocity, 50 * (1 + 1e-12));
+}
+
+// A velocity of 0 is a stop, and an override takes nothing from it: what keeps the axis slow then is the stop, also of a jog that nobody renews.
+TEST(AxisOverride, WhatStopsIsNotHeldDownByTheOverride) {
+    for (const bool jogged : {false, true}) {
+        OverrideRig rig;
+        ASSERT_EQ(rig.axis.set_operators_override(0.5), ErrorId::none);
+        rig.accept(jogged ? AxisCommand{.kind = CommandKind::jog, .velocity = 50} : at_velocity(50));
+        rig.run(100);
+        ASSERT_EQ(rig.view().set_velocity, 25);
+        ASSERT_EQ(rig.view().limiter, VelocityLimiter::override_factor);
+        if (!jogged) rig.accept(at_velocity(0));
+        ASSERT_TRUE(rig.run_until([&] { return rig.view().set_velocity < 25; }));  // the lease of the jog runs out
+        for (Patience patience; patience.lasts(rig.view().set_velocity != 0);) {
+            ASSERT_EQ(rig.view().limiter, VelocityLimiter::stopping) << jogged;
+            rig.step();
+        }
+    }
 }
 
 // P1-206: what is allowed; a refused call changes nothing.
