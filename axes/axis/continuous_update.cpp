@@ -27,13 +27,21 @@ ErrorId ContinuousUpdate::update(CommandId id, const AxisCommand& command) noexc
 ErrorId ContinuousUpdate::update_waiting(AcceptedCommand& waiting, const AxisCommand& command) noexcept {
     if (command.kind != waiting.command.kind || command.buffer_mode == mcAborting) return ErrorId::update_not_possible;
     if (const auto error = check_inputs(command, body_.units.counts_per_unit(), body_.config.limits); error != ErrorId::none) return error;
-    if (const auto error = admission_.refuse_target(command, false); error != ErrorId::none) return error;
+    if (const auto error = refuse_as_new(command, false); error != ErrorId::none) return error;
     const bool last = waiting.id == body_.queue.waiting_at(body_.queue.waiting() - 1).id;
     if (!last && coupling_.never_ends(command)) return ErrorId::buffer_mode_not_supported;
     const bool blended = blends(waiting.command.buffer_mode) || blends(command.buffer_mode);
     waiting.command = command;
     if (blended && motion_.goal.kind == Goal::Kind::position && !body_.begin_pending) motion_.goal_pending = true;
     return ErrorId::none;
+}
+
+/// What has not begun is held to all that it would have been held to, had it come like this: what could not begin would end its command.
+ErrorId ContinuousUpdate::refuse_as_new(const AxisCommand& command, bool starts_now) noexcept {
+    if (const auto error = coupling_.refuse(command); error != ErrorId::none) return error;
+    if (const auto error = admission_.refuse_target(command, starts_now); error != ErrorId::none) return error;
+    if (const auto error = switching_.refuse(command, starts_now); error != ErrorId::none) return error;
+    return given_.refuse(command, starts_now);
 }
 
 /// BufferMode of a running command has done its work: it is kept, and ignored (P1-109).
@@ -43,7 +51,8 @@ ErrorId ContinuousUpdate::update_active(const AxisCommand& command) noexcept {
     if (const auto error = check_inputs(command, body_.units.counts_per_unit(), body_.config.limits); error != ErrorId::none) return error;
     if (motion_.goal.limiter == VelocityLimiter::software_limit) return ErrorId::update_not_possible;
     if (body_.begin_pending) {  // not begun: as if it had come with these inputs
-        if (const auto error = admission_.refuse_target(command, true); error != ErrorId::none) return error;
+        if (const auto error = refuse_as_new(command, true); error != ErrorId::none) return error;
+        if (body_.queue.waiting() > 0 && coupling_.never_ends(command)) return ErrorId::buffer_mode_not_supported;
         active.command = command;
         return ErrorId::none;
     }

@@ -38,6 +38,7 @@ private:
     ErrorId update_active(const AxisCommand& command) noexcept;
     ErrorId update_target(const AxisCommand& command) noexcept;
     ErrorId update_superimposed(const AxisCommand& command) noexcept;
+    ErrorId refuse_as_new(const AxisCommand& command, bool starts_now) noexcept;
 
     AxisBody& body_;
     const Measured& measured_;

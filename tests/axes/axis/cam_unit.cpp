@@ -278,6 +278,19 @@ TEST(Cam, NothingWaitsBehindACamThatNeverEnds) {
     EXPECT_EQ(rig.refuse(1, relative(5, 50, mcBuffered)), ErrorId::buffer_mode_not_supported);
 }
 
+// Nor behind one that became such by ContinuousUpdate before it had begun.
+TEST(Cam, ACamThatHasNotBegunDoesNotBecomeEndlessBeforeAnother) {
+    CamRig rig(hump(0, 20, 5));
+    rig.start();
+    const auto once = select(rig, 1, rig.table, false), for_ever = select(rig, 1, rig.table, true);
+    const auto cam = rig.accept(1, cam_in(0, once));
+    const auto behind = rig.accept(1, relative(5, 50, mcBuffered));
+    EXPECT_EQ(rig.axes[1].update(cam, cam_in(0, for_ever), Owner::program), ErrorId::buffer_mode_not_supported);
+    EXPECT_EQ(rig.axes[1].update(cam, cam_in(0, {}), Owner::program), ErrorId::invalid_table);
+    rig.accept(0, absolute(30, 50));
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, behind) == CommandStatus::done; }));
+}
+
 // P1-259
 TEST(Cam, OnlySelectedTablesAreFollowed) {
     CamRig rig(hump(0, 20, 5));

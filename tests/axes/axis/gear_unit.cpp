@@ -349,6 +349,32 @@ TEST(Gear, AnUpdateChangesTheRatio) {
     rig.expect_no_jump();
 }
 
+// What has not begun, given in the same scan or waiting, is held to what it would have been held to, had it come with those inputs: it goes on with the
+// last good ones, and no ring closes behind the back of others.
+TEST(Gear, AnUpdateOfWhatHasNotBegunIsJudgedAsANewOne) {
+    CouplingRig rig(3);
+    rig.start();
+    rig.accept(0, at_velocity(20));
+    rig.run(100);
+    const auto update = [&](CommandId id, const AxisCommand& command) { return rig.axes[1].update(id, command, Owner::program); };
+    const auto gear = rig.accept(1, gear_in(0));
+    EXPECT_EQ(update(gear, gear_in(0, 1, 0)), ErrorId::invalid_ratio);
+    EXPECT_EQ(update(gear, gear_in(1)), ErrorId::invalid_master);
+    EXPECT_EQ(update(gear, gear_in(0, 2, 1)), ErrorId::none);
+    ASSERT_TRUE(rig.run_to_sync(1, gear));
+    EXPECT_NEAR(rig.view(1).set_velocity, 40, 1e-9);
+
+    rig.accept(1, relative(30, 10));
+    const auto waiting = rig.accept(1, gear_in(0, 1, 1, mcBuffered));
+    rig.accept(2, gear_in(1));
+    rig.run(5);
+    EXPECT_EQ(update(waiting, gear_in(2, 1, 1, mcBuffered)), ErrorId::coupling_loop);
+    EXPECT_EQ(update(waiting, gear_in(0, 1, 0, mcBuffered)), ErrorId::invalid_ratio);
+    ASSERT_EQ(rig.status(1, waiting), CommandStatus::queued);
+    ASSERT_TRUE(rig.run_to_sync(1, waiting));
+    EXPECT_NEAR(rig.view(1).set_velocity, 20, 1e-9);
+}
+
 // A slave whose software limit comes stops before it, in error.
 TEST(Gear, ASlaveStopsAtItsSoftwareLimit) {
     auto limited = plain_slave();
