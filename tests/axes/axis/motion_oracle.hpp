@@ -305,7 +305,9 @@ private:
         if (told_ && std::abs(told - expected) > left * rounding + told_grain + grain)
             breach("the drive is told a way of {} u at a set velocity of {} after {} u/s", told, b.velocity, a.velocity);
         const double way = b.position - a.position;
-        const bool follows = std::abs(way - expected) <= left * rounding + grain;
+        // Before and after at rest, with the drive told nothing new: more than a rounding is other coordinates then, however little it is.
+        const bool rested = rests && a.velocity == 0 && a.acceleration == 0 && told_ && told == 0 && std::abs(way) > told_grain + grain;
+        const bool follows = std::abs(way - expected) <= left * rounding + grain && !rested;
         bool renumbered = false;
         double shown = next.actual - last_.actual;  // what the motor did, as far as anybody saw
         if (!follows) {
@@ -314,8 +316,12 @@ private:
             const double late = shown != 0 ? unseen_ : 0;
             shown = modulo_of(shown - shift, next.modulo);
             const double moved = shown - std::clamp(shown, std::min(late, 0.0), std::max(late, 0.0));
-            renumbered = std::abs(shift) > told_grain && (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain) &&
-                         std::abs(moved) <= 2 * system.velocity * T + told_grain;
+            // A way that a motor makes anyway proves nothing of a shift that is shorter: at rest it has to be nearly the whole of what the motor did.
+            const bool alike = rested && std::abs(shift) <= 2 * system.velocity * T
+                                   ? std::abs(moved) <= std::abs(modulo_of(next.actual - last_.actual, next.modulo))
+                                   : std::abs(moved) <= 2 * system.velocity * T + told_grain;
+            renumbered =
+                std::abs(shift) > told_grain && alike && (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain);
             // Not again and again: that is a view that stands still while the drive is led on.
             again_ = renumbered ? again_ + 1 : 0;
             if (!renumbered || again_ == 4)

@@ -142,6 +142,31 @@ TEST(MotionOracle, KnowsCoordinatesFromMotion) {
     EXPECT_NE(told_of([&](Story& s, int k) { renumber(s, k), s.command.position += 7000; }), "");
 }
 
+// Also where the new number is nearly the old one, less than a motion might make in a cycle: three counts that a drive lagged when it was homed. Where the
+// actual position says nothing of it, the view has left the drive.
+TEST(MotionOracle, KnowsCoordinatesThatAreNearlyTheSameFromADriveThatIsLeft) {
+    const auto told_at_rest = [](double set, double actual) {
+        auto config = trapezoids(100);  // 1000 u/s2 without a jerk limit: 2.5e-4 u in a cycle from rest to rest
+        config.gearing.counts_per_revolution = 200'000;
+        MotionOracle oracle(config, cycle);
+        for (int k = 0; k < 40; ++k) {
+            auto story = at(0);
+            story.view.set_velocity = story.view.set_acceleration = 0;
+            story.view.set_position = k < 20 ? 0 : set;
+            story.view.actual_position = -0.003 + (k < 20 ? 0 : actual);
+            story.command.position = 0;
+            story.command.velocity = 0;
+            oracle.observe(story.view, story.command, config.limits);
+        }
+        return oracle.report();
+    };
+    for (const double shift : {0.00006, 0.00015, 0.0002, 0.003, 0.02}) {
+        EXPECT_EQ(told_at_rest(shift, shift), "") << shift;
+        EXPECT_NE(told_at_rest(shift, 0), "") << shift;
+    }
+    EXPECT_NE(told_at_rest(0.00015, 0.00005), "") << "the motor may have made that by itself";
+}
+
 // Feedback that was lost comes back with the new number: the actual position has 30 cycles to make up, 0.39 u, and no more.
 TEST(MotionOracle, KnowsCoordinatesFromMotionWhereFeedbackComesBack) {
     const auto returns = [](double more) {
