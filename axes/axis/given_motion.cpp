@@ -139,7 +139,7 @@ double GivenMotion::base_speed(double sense) const noexcept {
 
 double GivenMotion::jerk() const noexcept {
     const auto& command = body_.queue.active().command;
-    return command.kind == CommandKind::external ? command.jerk : 0;
+    return command.kind == CommandKind::external ? std::min(command.jerk, body_.config.limits.jerk) : 0;  // P1-037
 }
 
 ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {

@@ -33,7 +33,7 @@ public:
     }
     /// The newest set-point was a fed one.
     [[nodiscard]] bool follows_feed() const noexcept { return feed_.followed; }
-    /// u/s3 that a running feed keeps by its own word (AxisCommand::jerk); 0: nobody limits that of a feed or a table.
+    /// u/s3 that a running feed keeps by its own word (AxisCommand::jerk), the axis' at most; 0: nobody limits that of a feed or a table.
     [[nodiscard]] double jerk() const noexcept;
 
 private:

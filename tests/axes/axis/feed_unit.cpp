@@ -1,6 +1,7 @@
 // Set-points from outside, one per cycle: what is followed, what is refused, and what happens when none comes.
 
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -42,6 +43,40 @@ TEST(SetpointFeed, IsFollowedInTheCycleInWhichItComes) {
     }
     EXPECT_EQ(rig.status(id), CommandStatus::in_target);
     rig.expect_no_jump();
+}
+
+// P1-037: a jerk above the axis' own, 20000 u/s3, is that of the axis. A stop takes over what the feed declares: it would have braked with all of 30000 as well.
+TEST(SetpointFeed, DeclaresNoMoreJerkThanTheAxisHas) {
+    FedRig rig;
+    auto fed = external();
+    fed.jerk = 30'000;
+    const auto id = rig.accept(fed);
+    rig.step();
+    double velocity = 0, position = 0, before = 0;
+    const auto feed = [&](double acceleration) {
+        position += velocity * 1e-3 + (2 * before + acceleration) * 1e-6 / 6;
+        velocity += (before + acceleration) / 2 * 1e-3;
+        before = acceleration;
+        const auto answer = rig.axis.set(SetpointFeed{position, velocity, acceleration}, Owner::program);
+        rig.step();
+        return answer;
+    };
+    EXPECT_EQ(feed(20), ErrorId::none);
+    EXPECT_EQ(feed(30), ErrorId::none);
+    rig.accept({.kind = CommandKind::halt});
+    double most = 0;
+    for (Patience patience; patience.lasts(rig.view().state != AxisState::Standstill);) {
+        const double acceleration = rig.view().set_acceleration;
+        rig.step();
+        most = std::max(most, std::abs(rig.view().set_acceleration - acceleration));
+    }
+    EXPECT_LE(most, 20 * (1 + 1e-9));
+    EXPECT_EQ(rig.status(id), CommandStatus::aborted);
+
+    position = rig.view().set_position, velocity = before = 0;
+    rig.accept(fed);
+    rig.step();
+    EXPECT_EQ(feed(25), ErrorId::invalid_dynamics);
 }
 
 // A feed of 70 u/s beside an addition of 40: the sum passes 100 u/s, so the feed is refused where it does, and the axis brakes.
