@@ -1,6 +1,6 @@
 #pragma once
 // One random walk after the other, seed by seed. TAKTWERK_WALK_SEED=<seed> runs one alone and tells all that was asked in it;
-// TAKTWERK_WALK_FAILURES=<n> goes on until n of them have failed.
+// TAKTWERK_WALK_FAILURES=<n> goes on until n of them have failed; TAKTWERK_WALK_FIRST=<seed> begins there, with as many as ever.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,8 @@ WalkedSeeds walk_seeds(unsigned usual, int length, Make make, After after) {
     const char* only = std::getenv("TAKTWERK_WALK_SEED");
     walked.one_alone = only != nullptr;
     if (only) walked.first = static_cast<unsigned>(std::strtoul(only, nullptr, 10));
-    const unsigned last = only ? walked.first : static_cast<unsigned>(property_cases(usual));
+    else if (const char* first = std::getenv("TAKTWERK_WALK_FIRST")) walked.first = static_cast<unsigned>(std::strtoul(first, nullptr, 10));
+    const unsigned last = only ? walked.first : walked.first + static_cast<unsigned>(property_cases(usual)) - 1;
     const char* most = std::getenv("TAKTWERK_WALK_FAILURES");
     int failures = most ? std::atoi(most) : 1;
     for (unsigned seed = walked.first; seed <= last && failures > 0; ++seed) {

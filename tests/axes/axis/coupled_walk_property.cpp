@@ -68,6 +68,17 @@ TEST(CoupledWalks, SeedsThatHaveFoundSomething) {
     }
 }
 
+// Of walks with an operator. 827, 902: a stop with the jerk that a feed had declared, above the axis' own. 3496: an update of what had not begun made a
+// cam endless before a command that waited. 3575: coordinates that changed by three counts (the oracle). 3691: a limit that came down on a slave which was
+// speeding up, a step of 8 u/s. 4461: a jog that stopped was said to be overridden.
+TEST(CoupledWalks, SeedsOfAnOperatorThatHaveFoundSomething) {
+    WalkCounts counts;
+    for (const unsigned seed : {827u, 902u, 3496u, 3575u, 3691u, 4461u}) {
+        CoupledWalk walk(seed, counts, Directions::alike, Operators::at_the_override);
+        EXPECT_EQ(walk.run(length), "") << "seed " << seed;
+    }
+}
+
 // The same with axes that are slower in one direction, and have other ramps there: the oracle holds each velocity and each ramp against its own.
 TEST(CoupledWalks, KeepTheLimitsOfEachDirection) {
     WalkCounts counts;
