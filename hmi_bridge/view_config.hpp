@@ -32,7 +32,7 @@ struct ViewWidget {
     std::uint16_t seconds = 20;        ///< that a trend shows
     std::uint8_t width = 0;            ///< of twelve columns; 0: what the others leave, in equal parts
     std::string image{};               ///< its file as it is written, beside the machine file
-    std::string image_path{};          ///< where that is
+    std::string image_path{};          ///< where that is; empty: not where it may be, which has been said
     std::vector<ViewWidget> placed{};  ///< values and lamps on the image ...
     double x = 0, y = 0;               ///< ... and where: percent of its width and height
     std::string where{};

@@ -131,11 +131,15 @@ Result<MachineDrives> drives_of_machine(hmi::Client& client) {
     const auto layout = layout_of(client);
     if (!layout) return layout.error();
     MachineDrives out;
-    out.machine = layout->at("machine").get<std::string>();
-    out.slaves = layout->at("slaves").get<std::vector<std::string>>();
-    for (const auto& axis : layout->at("axes"))
-        if (const auto drive = axis.value("drive", ""); !drive.empty())
-            out.drives.push_back({axis.at("name").get<std::string>(), drive, axis.value("profile", ""), axis.value("drive_axis", 1)});
+    const auto read = understood(client.path(), [&] {
+        out.machine = layout->at("machine").get<std::string>();
+        out.slaves = layout->at("slaves").get<std::vector<std::string>>();
+        for (const auto& axis : layout->at("axes"))
+            if (const auto drive = axis.value("drive", ""); !drive.empty())
+                out.drives.push_back({axis.at("name").get<std::string>(), drive, axis.value("profile", ""), axis.value("drive_axis", 1)});
+        return 0;
+    });
+    if (!read) return read.error();
     return out;
 }
 
@@ -180,7 +184,8 @@ int with_drive_in_machine(const DriveOptions& options, const std::function<int(D
     const auto profile = profile_named(options, options.profile.empty() ? drive->profile : options.profile);
     if (!profile) return refuse(profile.error());
     DriveInMachine access(*client, machine->machine, *drive, *profile);
-    return work(access);
+    const auto code = understood(client->path(), [&] { return work(access); });
+    return code ? *code : refuse(code.error());
 }
 
 }  // namespace taktwerk::apps

@@ -22,6 +22,7 @@
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
+#include "apps/terminal/terminal_size.hpp"
 #include "core/clock.hpp"
 #include "hmi_bridge/wall_clock.hpp"
 
@@ -54,9 +55,11 @@ using Newests = std::map<std::string, Newest>;
 
 /// A picture where there is a terminal, else one below the other.
 void draw(const std::string& text, bool first) {
+    // A line that the terminal breaks, or one too many, would push the picture out of its place.
+    const auto terminal = terminal_size();
     if (::isatty(STDOUT_FILENO) != 0) fmt::print("\033[H\033[J");
     else if (!first) fmt::print("\n");
-    fmt::print("{}", text);
+    fmt::print("{}", terminal ? fitted(text, *terminal) : text);
     std::fflush(stdout);
 }
 

@@ -100,7 +100,7 @@ int show_standing(const AlarmsOptions& options, hmi::Client& client) {
         fmt::print("{}\n", answer->dump(-1, ' ', false, Json::error_handler_t::replace));
         return exit_ok;
     }
-    const auto& alarms = (*answer)["alarms"];
+    const auto& alarms = answer->at("alarms");
     if (alarms.empty()) fmt::print("no alarm is listed; `taktwerk alarms --history` shows those that were\n");
     TextTable table{{{"source"}, {"alarm"}, {"times", TextTable::Column::Side::right}, {""}, {"text", {}, 100}}};
     for (const auto& alarm : alarms)
@@ -160,9 +160,9 @@ void add_alarms(CLI::App& app, Action& action) {
     sub->add_flag("--chinese", options->chinese, "their Chinese words");
     sub->callback([&action, options] {
         action = [options] {
-            auto client = hmi::Client::connect(options->remote.machine);
-            if (!client) return report(options->remote, client.error());
-            return options->history ? show_history(*options, *client) : show_standing(*options, *client);
+            return with_machine(options->remote, [&](hmi::Client& client) {
+                return options->history ? show_history(*options, client) : show_standing(*options, client);
+            });
         };
     });
 }

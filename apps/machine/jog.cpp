@@ -38,10 +38,8 @@ nlohmann::ordered_json axis_of(const nlohmann::ordered_json& state, const std::s
     return {};
 }
 
-int jog(const JogOptions& options) {
-    auto client = hmi::Client::connect(options.remote.machine);
-    if (!client) return report(options.remote, client.error());
-    const auto velocity = velocity_on(*client, options.axis, options.speed);
+int jog(const JogOptions& options, hmi::Client& client) {
+    const auto velocity = velocity_on(client, options.axis, options.speed);
     if (!velocity) return report(options.remote, velocity.error());
     watch_stop_signals();
     SystemClock clock;
@@ -53,13 +51,13 @@ int jog(const JogOptions& options) {
     for (bool press = true; !stop_requested(); press = false) {
         nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", *velocity}};
         if (press) request["press"] = true;
-        const auto answer = client->request(request);
+        const auto answer = client.request(request);
         if (!answer) return report(options.remote, answer.error());
         if (const auto note = answer->value("note", std::string{}); press && !note.empty() && !options.remote.json)
             fmt::print("{}: {}\n", options.axis, note);
         constexpr int looked_at = 4;  // by then it is as fast as it may be, or on its way there
         if (show || ++renewals == looked_at) {
-            if (const auto state = state_of(*client)) {
+            if (const auto state = state_of(client)) {
                 const auto axis = axis_of(*state, options.axis);
                 if (axis.is_object()) held = held_velocity(axis, state->at("mode").get<std::string>());
                 if (show && axis.is_object())
@@ -73,12 +71,12 @@ int jog(const JogOptions& options) {
         std::this_thread::sleep_for(renewal);
     }
     if (show) fmt::print("\n");
-    const auto released = client->request({{"cmd", "jog"}, {"axis", options.axis}, {"velocity", 0}});
+    const auto released = client.request({{"cmd", "jog"}, {"axis", options.axis}, {"velocity", 0}});
     if (!released) return report(options.remote, released.error());
 
     // Where it came to rest is what one wants to know.
     for (const auto end = clock.now() + settling; clock.now() < end;) {
-        const auto state = state_of(*client);
+        const auto state = state_of(client);
         if (!state) return report(options.remote, state.error());
         const auto axis = axis_of(*state, options.axis);
         if (!axis.is_object()) break;
@@ -99,7 +97,9 @@ void add_jog(CLI::App& app, Action& action) {
     sub->add_option("AXIS", options->axis, "axis")->required();
     sub->add_option("--velocity", options->speed, "signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s")->required();
     add_duration(*sub, "--for", options->for_s, "let go after this time; default: at Ctrl-C");
-    sub->callback([&action, options] { action = [options] { return jog(*options); }; });
+    sub->callback([&action, options] {
+        action = [options] { return with_machine(options->remote, [&](hmi::Client& client) { return jog(*options, client); }); };
+    });
 }
 
 }  // namespace taktwerk::apps

@@ -74,17 +74,15 @@ Result<Json> result_of(hmi::Client& client, const MeasureOptions& options) {
     if (options.window_u > 0) question["window"] = options.window_u;
     auto answer = client.request(question, measure_patience);
     if (!answer) return answer.error();
-    return (*answer)["measure_result"];
+    return answer->at("measure_result");
 }
 
-int measure(MeasureOptions options) {
-    auto client = hmi::Client::connect(options.remote.machine);
-    if (!client) return report(options.remote, client.error());
-    const auto order = order_of(*client, options);
+int measure(MeasureOptions options, hmi::Client& client) {
+    const auto order = order_of(client, options);
     if (!order) return report(options.remote, order.error());
     auto question = *order;
     question["cmd"] = "measure_plan";
-    const auto plan = client->request(question);
+    const auto plan = client.request(question);
     if (!plan) return report(options.remote, plan.error());
     if (options.only_plan && options.remote.json) fmt::print("{}\n", plan->at("measure_plan").dump());
     if (!options.remote.json) fmt::print("{}: {}\n", options.axis, plan_text(plan->at("measure_plan")));
@@ -95,11 +93,11 @@ int measure(MeasureOptions options) {
     auto request = *order;
     request["cmd"] = "measure";
     request["press"] = true;
-    if (const auto pressed = client->request(request); !pressed) return report(options.remote, pressed.error());
+    if (const auto pressed = client.request(request); !pressed) return report(options.remote, pressed.error());
     const bool show = !options.remote.json && ::isatty(STDOUT_FILENO) != 0;
     for (bool over = false; !over && !stop_requested();) {
         std::this_thread::sleep_for(measure_renewal);
-        const auto now = result_of(*client, options);
+        const auto now = result_of(client, options);
         if (!now) return report(options.remote, now.error());
         over = !now->at("running").get<bool>();
         if (over) break;
@@ -108,16 +106,16 @@ int measure(MeasureOptions options) {
                        hmi::number_of(now->at("plan").at("duration_s")));
         if (show) std::fflush(stdout);
         // One that has just ended is told by the next look.
-        (void)client->request({{"cmd", "measure"}, {"axis", options.axis}});
+        (void)client.request({{"cmd", "measure"}, {"axis", options.axis}});
     }
     if (show) fmt::print("\r{:40}\r", "");
     if (stop_requested())
-        if (const auto stopped = client->request({{"cmd", "stop"}, {"axis", options.axis}}); !stopped)
+        if (const auto stopped = client.request({{"cmd", "stop"}, {"axis", options.axis}}); !stopped)
             return report(options.remote, stopped.error());
-    auto result = result_of(*client, options);
+    auto result = result_of(client, options);
     for (int i = 0; result && result->at("running").get<bool>() && i < 20; ++i) {
         std::this_thread::sleep_for(measure_renewal);
-        result = result_of(*client, options);
+        result = result_of(client, options);
     }
     if (!result) return report(options.remote, result.error());
     if (options.remote.json) fmt::print("{}\n", result->dump());
@@ -148,7 +146,9 @@ void add_measure(CLI::App& app, Action& action) {
     sub->add_option("--window", options->window, "step: settled inside it, 0.02mm; default: the axis' in-position window");
     sub->add_flag("--plan", options->only_plan, "only say where it would go");
     sub->add_option("--csv", options->csv, "file for the curves");
-    sub->callback([&action, options] { action = [options] { return measure(*options); }; });
+    sub->callback([&action, options] {
+        action = [options] { return with_machine(options->remote, [&](hmi::Client& client) { return measure(*options, client); }); };
+    });
 }
 
 }  // namespace taktwerk::apps

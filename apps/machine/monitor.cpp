@@ -1,10 +1,10 @@
 // taktwerk monitor: a running machine on the terminal, a few times a second.
 
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -15,6 +15,7 @@
 #include "apps/machine/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/terminal_size.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -59,12 +60,11 @@ private:
     bool keys_ = false;
 };
 
-ScreenSize terminal_size() {
-    winsize size{};
+ScreenSize screen_size() {
     // Into a pipe or a file: nothing is cut, whoever reads it wraps as he likes.
-    constexpr std::size_t whole_line = 1000;
-    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {whole_line, 0, false};
-    return {std::max<std::size_t>(size.ws_col, 40), size.ws_row, true};
+    constexpr std::size_t whole_line = 1000, least = 40;
+    const auto terminal = terminal_size();
+    return terminal ? ScreenSize{std::max(terminal->columns, least), terminal->rows, true} : ScreenSize{whole_line, 0, false};
 }
 
 int once(const MonitorOptions& options, hmi::Client& client) {
@@ -76,7 +76,7 @@ int once(const MonitorOptions& options, hmi::Client& client) {
     }
     const auto layout = layout_of(client);
     if (!layout) return report(options.remote, layout.error());
-    auto size = terminal_size();
+    auto size = screen_size();
     size.rows = 0;
     for (const auto& line : monitor_screen(*state, *layout, size))
         fmt::print("{}\n", std::string_view(line).substr(0, line.find_last_not_of(' ') + 1));
@@ -101,7 +101,7 @@ int watch(const MonitorOptions& options, hmi::Client& client) {
         const RawTerminal terminal;
         nlohmann::ordered_json layout;
         while (!stop_requested()) {
-            const auto size = terminal_size();
+            const auto size = screen_size();
             std::vector<std::string> lines;
             if (layout.is_null()) {
                 if (auto answer = layout_of(client)) layout = std::move(*answer);
@@ -125,14 +125,12 @@ int watch(const MonitorOptions& options, hmi::Client& client) {
     return ended ? report(options.remote, *ended) : static_cast<int>(exit_ok);
 }
 
-int monitor(const MonitorOptions& options) {
-    auto client = hmi::Client::connect(options.remote.machine);
-    if (!client) return report(options.remote, client.error());
+int monitor(const MonitorOptions& options, hmi::Client& client) {
     watch_stop_signals();
-    if (options.once) return once(options, *client);
-    if (options.remote.json) return stream(options, *client);
-    if (::isatty(STDOUT_FILENO) == 0) return once(options, *client);
-    return watch(options, *client);
+    if (options.once) return once(options, client);
+    if (options.remote.json) return stream(options, client);
+    if (::isatty(STDOUT_FILENO) == 0) return once(options, client);
+    return watch(options, client);
 }
 
 }  // namespace
@@ -142,7 +140,9 @@ void add_monitor(CLI::App& app, Action& action) {
     auto options = std::make_shared<MonitorOptions>();
     add_remote_options(*sub, options->remote);
     sub->add_flag("--once", options->once, "print the present state and end");
-    sub->callback([&action, options] { action = [options] { return monitor(*options); }; });
+    sub->callback([&action, options] {
+        action = [options] { return with_machine(options->remote, [&](hmi::Client& client) { return monitor(*options, client); }); };
+    });
 }
 
 }  // namespace taktwerk::apps

@@ -271,9 +271,7 @@ int move(const Order& order, hmi::Client& client) {
 }
 
 int carry_out(const Order& order, Body body) {
-    auto client = hmi::Client::connect(order.remote.machine);
-    if (!client) return report(order.remote, client.error());
-    return body(order, *client);
+    return with_machine(order.remote, [&](hmi::Client& client) { return body(order, client); });
 }
 
 struct Adder {

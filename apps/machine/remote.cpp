@@ -1,6 +1,8 @@
 #include "apps/machine/remote.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -13,12 +15,14 @@
 namespace taktwerk::apps {
 namespace {
 
+Error bad_answer(const std::string& path) {
+    return {"socket.bad_answer", path, "the answer is not what this version understands", "Use the command line of the runtime's version."};
+}
+
 Result<nlohmann::ordered_json> ask(hmi::Client& client, const char* question) {
     auto answer = client.request({{"cmd", question}});
     if (!answer) return answer.error();
-    if (!answer->contains(question))
-        return Error{"socket.bad_answer", client.path(), "the answer is not what this version understands",
-                     "Use the command line of the runtime's version."};
+    if (!answer->contains(question)) return bad_answer(client.path());
     return (*answer)[question];
 }
 
@@ -58,6 +62,25 @@ int report(const RemoteOptions& options, const Error& error) {
                    json_text(error.subject), json_text(error.what), json_text(error.remedy));
     else print_error(error);
     return exit_code_of(error);
+}
+
+Result<int> understood(const std::string& path, const std::function<int()>& work) {
+    try {
+        return work();
+    } catch (const nlohmann::json::exception& error) {
+        auto told = bad_answer(path);
+        // "[json.exception.type_error.302] type must be string, but is number": behind the bracket it is for people.
+        const std::string_view why(error.what());
+        told.what += fmt::format(": {}", why.substr(std::min(why.find("] ") + 2, why.size())));
+        return told;
+    }
+}
+
+int with_machine(const RemoteOptions& options, const std::function<int(hmi::Client&)>& work) {
+    auto client = hmi::Client::connect(options.machine);
+    if (!client) return report(options, client.error());
+    const auto code = understood(client->path(), [&] { return work(*client); });
+    return code ? *code : report(options, code.error());
 }
 
 Result<double> velocity_on(hmi::Client& client, const std::string& axis, const std::string& text) {

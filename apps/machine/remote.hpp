@@ -1,6 +1,7 @@
 #pragma once
 // What the sub-commands share that talk to a running machine: which one, how answers are printed, which exit code they mean.
 
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +25,12 @@ void add_remote_options(CLI::App& sub, RemoteOptions& options);
 /// The answer of a command for people or scripts; returns the exit code.
 int report(const RemoteOptions& options, const std::string& done);
 int report(const RemoteOptions& options, const Error& error);
+
+/// Connects, and does `work`, which returns the exit code. Where something in an answer is of another type than this version knows, that is told and ends
+/// it (socket.bad_answer).
+int with_machine(const RemoteOptions& options, const std::function<int(hmi::Client&)>& work);
+/// The same where others connect and report. `path`: of the socket.
+[[nodiscard]] Result<int> understood(const std::string& path, const std::function<int()>& work);
 
 /// The machine's state (the object of "state").
 [[nodiscard]] Result<nlohmann::ordered_json> state_of(hmi::Client& client);

@@ -25,9 +25,16 @@ std::vector<std::string> sockets() {
 }
 
 bool drives(const nlohmann::ordered_json& hello, const std::string& port) {
-    if (hello.value("interface", "") == port) return true;
+    if (const auto interface = hello.find("interface"); interface != hello.end() && *interface == port) return true;
     const auto devices = hello.find("serial_devices");
     return devices != hello.end() && devices->is_array() && std::find(devices->begin(), devices->end(), port) != devices->end();
+}
+
+/// Whatever answers there may be of another version, or no runtime at all.
+RunningMachine running(const nlohmann::ordered_json& hello, const std::string& path) {
+    const auto name = hello.find("machine"), process = hello.find("pid");
+    return {name != hello.end() && name->is_string() ? name->get<std::string>() : std::string{}, path,
+            process != hello.end() && process->is_number_integer() ? process->get<int>() : 0};
 }
 
 }  // namespace
@@ -41,7 +48,7 @@ std::optional<RunningMachine> machine_on(const std::string& port, const std::str
         const auto answer = client->request({{"cmd", "hello"}}, patience);
         if (!answer || !answer->contains("hello")) continue;
         const auto& hello = (*answer)["hello"];
-        if (hello.is_object() && drives(hello, port)) return RunningMachine{hello.value("machine", ""), path, hello.value("pid", 0)};
+        if (hello.is_object() && drives(hello, port)) return running(hello, path);
     }
     return std::nullopt;
 }

@@ -23,11 +23,11 @@ int help() {
 
 int simulate(const SimulateOptions& options) {
     if (options.words.empty() || options.words.front() == "help") return help();
-    auto client = hmi::Client::connect(options.remote.machine);
-    if (!client) return report(options.remote, client.error());
     const auto line = fmt::format("{}", fmt::join(options.words, " "));
-    if (const auto answer = client->request({{"cmd", "simulate"}, {"line", line}}); !answer) return report(options.remote, answer.error());
-    return report(options.remote, line);
+    return with_machine(options.remote, [&](hmi::Client& client) {
+        const auto answer = client.request({{"cmd", "simulate"}, {"line", line}});
+        return answer ? report(options.remote, line) : report(options.remote, answer.error());
+    });
 }
 
 }  // namespace

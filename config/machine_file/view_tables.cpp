@@ -1,5 +1,6 @@
 #include "config/machine_file/view_tables.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <set>
@@ -21,6 +22,7 @@ using Kind = ViewWidget::Kind;
 
 constexpr std::size_t longest_text = 400;  ///< bytes
 constexpr std::size_t most_views = 32, most_rows = 40, most_in_a_row = 12, most_placed = 60, most_in_a_trend = 8;
+constexpr unsigned columns = 12;  ///< of a row
 
 /// Text of people: one line for both languages, or `{en: ..., zh: ...}`.
 Codec<LocalText> local_text() {
@@ -131,6 +133,20 @@ bool means(std::string_view key, Kind kind) {
     return true;
 }
 
+/// In the machine file's folder, or below it.
+bool lies_inside(const std::string& image) {
+    const auto file = std::filesystem::path(image).lexically_normal();
+    return !file.empty() && !file.is_absolute() && *file.begin() != "..";
+}
+
+/// Whoever hands the machine on hands on its folder: a picture from elsewhere would be missing there, or be another one.
+void check_image(Reader& reader, const Node& node, ViewWidget& widget) {
+    widget.where = located(reader.file(), node.at);
+    if (lies_inside(widget.image)) return;
+    reader.problem(node.at, "view.image_outside", fmt::format("picture '{}' does not lie in the machine file's folder", widget.image),
+                   "put it beside the machine file, or into a folder beside it");
+}
+
 /// Exactly one key says what it is; the others suit it.
 void check_widget(Reader& reader, const Node& node, ViewWidget& widget) {
     widget.where = located(reader.file(), node.at);
@@ -149,7 +165,10 @@ void check_widget(Reader& reader, const Node& node, ViewWidget& widget) {
     if (said == nullptr)
         return reader.problem(node.at, "view.no_kind", fmt::format("`{}` does not say what it is", reader.path()),
                               "write one of value, lamp, button, switch, set, bar, trend, axis, text, alarms and image");
-    if (widget.kind == Kind::image) widget.where = located(reader.file(), said->value.at);
+    if (widget.kind == Kind::image) check_image(reader, said->value, widget);
+    if (widget.kind == Kind::alarms && said->value.text == "false")
+        reader.problem(said->value.at, "view.no_meaning", fmt::format("`{}` would show nothing", reader.path()),
+                       "write `alarms: true`, or remove the widget");
     for (const auto& entry : node.entries)
         if (!means(entry.key, widget.kind))
             reader.problem(entry.at, "view.no_meaning", fmt::format("a {} has no `{}`", said->key, entry.key),
@@ -213,21 +232,43 @@ Table<ViewWidget> widget_table() {
         "alarms", boolean(), [](W& w, const bool&) { w.kind = Kind::alarms; }, "`true`: what alarms stand, with reset"));
     f.push_back(field_via<W>(
         "image", text(), [](W& w, const std::string& file) { w.kind = Kind::image, w.image = file; },
-        "a picture: a PNG, JPEG or SVG file of at most 1 MiB, relative to this file"));
+        "a picture: a PNG, JPEG or SVG file of at most 1 MiB, in the folder of this file or below it"));
     f.push_back(with_default(field("placed", &W::placed, bounded(list(section(placed_table())), most_placed, "values on one picture"),
                                    "values and lamps on the picture"),
                              ""));
     f.push_back(with_default(field("minimum", &W::minimum, maybe(number()), "of a bar or trend: its lower end"), "the value's own"));
     f.push_back(with_default(field("maximum", &W::maximum, maybe(number()), "its upper end"), "the value's own"));
     f.push_back(field("seconds", &W::seconds, integer<std::uint16_t>(1, 600), "that a trend shows"));
-    f.push_back(with_default(field("width", &W::width, integer<std::uint8_t>(1, 12), "of twelve columns"), "what the others leave"));
+    f.push_back(with_default(field("width", &W::width, integer<std::uint8_t>(1, columns), "of the twelve columns of a row"),
+                             "what the others leave"));
     return table;
+}
+
+using Row = std::vector<ViewWidget>;
+
+/// Something stands in it, and all of it fits: what says no `width` has one column at least.
+Codec<Row> row() {
+    auto widgets = bounded(list(section(widget_table())), most_in_a_row, "widgets in one row");
+    widgets.read = [read = std::move(widgets.read)](Reader& reader, const Node& node, Row& out) {
+        if (!read(reader, node, out)) return false;
+        if (out.empty()) {
+            reader.problem(node.at, "view.empty_row", fmt::format("`{}` has no widget", reader.path()), "add one, or remove the row");
+            return false;
+        }
+        unsigned taken = 0;
+        for (const auto& widget : out) taken += std::max<unsigned>(widget.width, 1);
+        if (taken <= columns) return true;
+        reader.problem(node.at, "view.too_wide",
+                       fmt::format("the widgets of `{}` need {} columns, and a row has {}", reader.path(), taken, columns),
+                       "give them less `width` (without one a widget needs one column at least), or make two rows of it");
+        return false;
+    };
+    return widgets;
 }
 
 Table<View> view_table() {
     using V = View;
-    using Row = std::vector<ViewWidget>;
-    auto rows = list(bounded(list(section(widget_table())), most_in_a_row, "widgets in one row"));
+    auto rows = list(row());
     rows.read = [read = std::move(rows.read)](Reader& reader, const Node& node, std::vector<Row>& out) {
         if (node.kind == Node::Kind::list && (node.items.empty() || node.items.size() > most_rows)) {
             reader.problem(node.at, "view.too_much", fmt::format("a view has 1 to {} rows, and this has {}", most_rows, node.items.size()),
@@ -262,7 +303,8 @@ Field<MachineFile> views_field() {
         for (auto& view : out)
             for (auto& row : view.rows)
                 for (auto& widget : row)
-                    if (widget.kind == Kind::image) widget.image_path = (folder / widget.image).lexically_normal().string();
+                    if (widget.kind == Kind::image && lies_inside(widget.image))
+                        widget.image_path = (folder / widget.image).lexically_normal().string();
         return good;
     };
     return with_default(field_at<F>(

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "hmi_bridge/gateway/request_age.hpp"
 #include "hmi_bridge/words/answer_text.hpp"
 #include "hmi_bridge/words/target_names.hpp"
 
@@ -33,12 +34,6 @@ bool is_held(CommandKind kind) noexcept { return kind == CommandKind::jog || kin
 bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
 /// Of a button, or a switch that is put off: never too late either, but in its turn.
 bool puts_off(const CommandRequest& request) noexcept { return request.kind == CommandKind::set_value && request.value == 0; }
-
-/// Since it was given, as far as anybody knows: by the client's clock, and by how long it has waited here, whichever is longer.
-Duration age_of(const CommandRequest& request, Instant now) {
-    const auto waited = request.arrival.at == Instant{} ? Duration{} : now - request.arrival.at;
-    return std::max({request.age, waited, Duration{}});
-}
 
 /// Bit by bit, so that a repeated NaN is the same NaN.
 bool same(double a, double b) noexcept { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
@@ -160,22 +155,11 @@ void Gateway::close(ClientId id) {
 }
 
 std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request, Instant now) const {
-    const auto longest = is_held(request.kind) ? longest_jog_validity : longest_validity;
-    if (request.valid_for < std::chrono::milliseconds{1} || request.valid_for > longest)
-        return Refusal{Answer::bad_value,
-                       bad_value(fmt::format("a validity of {:g} ms is outside its range", milliseconds(request.valid_for)),
-                                 fmt::format("Give 1 to {:g} ms.", milliseconds(longest)))};
-    if (request.age < -clock_tolerance)
-        return Refusal{
-            Answer::stale,
-            {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
-             "Set the clocks right; a command's age cannot be judged."}};
-    if (const auto age = age_of(request, now); age > validity_of(request))
-        return Refusal{Answer::stale,
-                       {"command.stale", "",
-                        fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out", milliseconds(age),
-                                    milliseconds(validity_of(request))),
-                        "Give it again; if it comes back, the connection or this computer is too slow."}};
+    RequestAge given{request.valid_for, request.age, request.arrival.at};
+    if (auto error = given.refuse_validity(is_held(request.kind) ? longest_jog_validity : RequestAge::longest_validity))
+        return Refusal{Answer::bad_value, std::move(*error)};
+    given.valid_for = validity_of(request);
+    if (auto error = given.refuse_age(now)) return Refusal{Answer::stale, std::move(*error)};
     return std::nullopt;
 }
 
@@ -269,7 +253,9 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                            "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
     if (refusal && refusal->error.subject.empty())
         refusal->error.subject = subject_of(machine_.layout(), kind, command.axis, command.index);
-    command.expires = puts_off(request) ? Instant{} : now + (validity_of(request) - age_of(request, now));
+    command.expires = puts_off(request)
+                          ? Instant{}
+                          : now + (validity_of(request) - RequestAge{.age = request.age, .arrived = request.arrival.at}.at(now));
     command.after = request.arrival.after;
     return refusal;
 }

@@ -83,9 +83,7 @@ public:
     static constexpr std::size_t max_clients = 48;  ///< of all sources together
     static constexpr std::size_t remembered = 16;   ///< commands per client
     static constexpr Duration answer_patience = std::chrono::seconds{2};
-    static constexpr Duration longest_validity = std::chrono::seconds{10};
     static constexpr Duration longest_jog_validity = std::chrono::milliseconds{500};
-    static constexpr Duration clock_tolerance = std::chrono::seconds{1};
     /// A press of another client is taken again after this long without a renewal (the cycle's own lease is shorter).
     static constexpr Duration jog_session = std::chrono::milliseconds{500};
 

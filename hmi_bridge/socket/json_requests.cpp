@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/nearest_name.hpp"
+#include "hmi_bridge/gateway/request_age.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/answer_line.hpp"
 #include "hmi_bridge/socket/json_history.hpp"
@@ -88,6 +89,27 @@ Error unknown_command(std::string_view cmd) {
                          near.empty() ? fmt::format("Use one of: {}.", fmt::join(words, ", ")) : fmt::format("Did you mean \"{}\"?", near));
 }
 
+/// "valid_ms" and "utime": what every command may say.
+RequestAge read_age(JsonFields& fields, std::int64_t wall_utime, Duration valid_for = RequestAge{}.valid_for) {
+    RequestAge given{.valid_for = valid_for};
+    // A validity beyond what fits is as wrong as one beyond the gateway's limit.
+    if (const auto ms = fields.maybe_integer("valid_ms"))
+        given.valid_for = std::chrono::milliseconds{std::clamp<std::int64_t>(*ms, -1, 1'000'000)};
+    if (const auto utime = fields.maybe_integer("utime")) {
+        constexpr std::int64_t day = 86'400'000'000;
+        const bool far = *utime < wall_utime - day || *utime > wall_utime + day || *utime < 0;
+        given.age = std::chrono::microseconds{far ? (*utime < wall_utime ? day : -day) : wall_utime - *utime};
+    }
+    return given;
+}
+
+/// Of what is carried out here and now, without the gateway.
+std::optional<Error> too_late(RequestAge given, const Arrival& arrival, Instant now) {
+    given.arrived = arrival.at;
+    if (auto error = given.refuse_validity()) return error;
+    return given.refuse_age(now);
+}
+
 Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields, std::int64_t wall_utime) {
     CommandRequest request;
     request.kind = entry.kind;
@@ -125,14 +147,9 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
                 Error{"command.bad_value", "", fmt::format("there is no mode {}", shown(wanted)), "Give manual, setup or automatic."};
     }
     request.commissioning = fields.flag("commissioning");
-    // A validity beyond what fits is as wrong as one beyond the gateway's limit.
-    if (const auto ms = fields.maybe_integer("valid_ms"))
-        request.valid_for = std::chrono::milliseconds{std::clamp<std::int64_t>(*ms, -1, 1'000'000)};
-    if (const auto utime = fields.maybe_integer("utime")) {
-        constexpr std::int64_t day = 86'400'000'000;
-        const bool far = *utime < wall_utime - day || *utime > wall_utime + day || *utime < 0;
-        request.age = std::chrono::microseconds{far ? (*utime < wall_utime ? day : -day) : wall_utime - *utime};
-    }
+    const auto given = read_age(fields, wall_utime, request.valid_for);
+    request.valid_for = given.valid_for;
+    request.age = given.age;
     fields.finish();
     if (fields.error()) return *fields.error();
     if (mode_error) return *mode_error;
@@ -205,7 +222,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         return gateway_.handle(*request, now);
     }
     for (const auto& entry : drive_words)
-        if (entry.word == cmd) return ask_drive(entry.kind, connection, id_text, fields, now);
+        if (entry.word == cmd) return ask_drive(entry.kind, connection, id_text, fields, now, arrival);
     if (ScopeRequests::knows(cmd)) {
         fields.integer("utime");
         if (const auto begun = scope_.handle(connection, id_text, cmd, fields, now); !begun) refuse(connection, id_text, begun.error());
@@ -216,20 +233,11 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
     if (answer_measure(cmd, connection, id_text, fields)) return;
+    if (cmd == "simulate") return simulate(connection, id_text, fields, now, arrival);
     fields.integer("utime");
-    const auto happening = cmd == "simulate" ? fields.text("line", true) : std::string{};
     const auto image = cmd == "view_image" ? fields.text("image", true) : std::string{};
     fields.finish();
     if (fields.error()) return refuse(connection, id_text, *fields.error());
-    if (cmd == "simulate") {
-        if (!simulate_)
-            return refuse(
-                connection, id_text,
-                {"simulate.real_machine", machine_.layout().machine, "this machine is not simulated: its inputs and faults are real",
-                 "Start it with `taktwerk run FILE --simulate`."});
-        if (const auto done = simulate_(happening); !done) return refuse(connection, id_text, done.error());
-        return answer(connection, fmt::format(R"({{"id":{},"ok":true}})", id_text));
-    }
     const auto with = [&](std::string_view key, std::string_view value) {
         answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
     };
@@ -247,6 +255,20 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         return refuse(connection, id_text, {"state.stuck", "", *stuck, "Use the emergency stop; end the runtime and mend that program."});
     if (cmd == "state") return with("state", state_json(*snapshot_, machine_, [&](ClientId client) { return gateway_.name_of(client); }));
     with("alarms", alarms_json(*snapshot_, machine_));
+}
+
+void JsonRequests::simulate(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now, const Arrival& arrival) {
+    const auto given = read_age(fields, wall_utime_());
+    const auto happening = fields.text("line", true);
+    fields.finish();
+    if (fields.error()) return refuse(connection, id, *fields.error());
+    if (!simulate_)
+        return refuse(connection, id,
+                      {"simulate.real_machine", machine_.layout().machine, "this machine is not simulated: its inputs and faults are real",
+                       "Start it with `taktwerk run FILE --simulate`."});
+    if (const auto late = too_late(given, arrival, now)) return refuse(connection, id, *late);
+    if (const auto done = simulate_(happening); !done) return refuse(connection, id, done.error());
+    answer(connection, accepted_line(id));
 }
 
 std::string JsonRequests::hello(const std::optional<std::string>& stuck, Instant now) const {
@@ -324,7 +346,8 @@ void JsonRequests::answer_image(ConnectionId connection, const std::string& id, 
             near.empty() ? "Ask \"views\" for their names." : fmt::format("Did you mean '{}'?", near)});
 }
 
-void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
+void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now,
+                             const Arrival& arrival) {
     DriveRequest request;
     request.kind = kind;
     request.axis = fields.text("axis", true);
@@ -333,9 +356,13 @@ void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, con
         request.value = fields.text("value", true);
         request.store = fields.flag("store");
     }
-    fields.integer("utime");
+    const bool asks_only = kind == DriveRequestKind::read;
+    if (asks_only) fields.integer("utime");
+    const auto given = asks_only ? RequestAge{} : read_age(fields, wall_utime_());
     fields.finish();
     if (fields.error()) return refuse(connection, id, *fields.error());
+    if (!asks_only)
+        if (const auto late = too_late(given, arrival, now)) return refuse(connection, id, *late);
     request.who = names_[connection];
     if (const auto client = clients_.find(connection); client != clients_.end()) request.client = client->second;
     request.tag = connection;

@@ -99,7 +99,9 @@ private:
     bool answer_measure(std::string_view cmd, ConnectionId connection, const std::string& id, JsonFields& fields);
     void ask_history(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
     void answer_image(ConnectionId connection, const std::string& id, const std::string& name);
-    void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
+    void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now,
+                   const Arrival& arrival);
+    void simulate(ConnectionId connection, const std::string& id, JsonFields& fields, Instant now, const Arrival& arrival);
 
     Gateway& gateway_;
     MachineLink& machine_;

@@ -41,7 +41,7 @@ private:
     }
 
     void look(const ViewWidget& widget) {
-        if (widget.kind == Kind::image && !values_.with_programs) {
+        if (widget.kind == Kind::image && !values_.with_programs && !widget.image_path.empty()) {
             if (auto image = read_image(widget.image_path); !image) {
                 const auto& error = image.error();
                 add(widget.where, error.code, fmt::format("picture '{}': {}", widget.image, error.what), error.remedy);

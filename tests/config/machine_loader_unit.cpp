@@ -77,7 +77,8 @@ std::vector<Expectation> expectations(const std::string& path) {
 
 std::vector<std::string> bad_files() {
     std::vector<std::string> out;
-    for (const auto& file : std::filesystem::directory_iterator(source + "/tests/config/bad")) out.push_back(file.path().stem().string());
+    for (const auto& file : std::filesystem::directory_iterator(source + "/tests/config/bad"))
+        if (file.path().extension() == ".yaml") out.push_back(file.path().stem().string());
     std::sort(out.begin(), out.end());
     return out;
 }

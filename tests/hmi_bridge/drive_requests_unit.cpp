@@ -308,5 +308,37 @@ TEST_F(DriveRequestsTest, TheSocketSpeaksOfThem) {
     EXPECT_EQ(say(R"({"id":5,"cmd":"drive_raed","axis":"x"})")["error"]["code"], "request.unknown_command");
 }
 
+// What changes a drive, and has waited, is not what anybody wants now. What is only read hurts nobody.
+TEST_F(DriveRequestsTest, AWriteThatComesTooLateIsRefused) {
+    constexpr std::int64_t wall = 1'800'000'000'000'000;  // us since 1970
+    Gateway gateway{machine};
+    JsonRequests lines{gateway, machine, [] { return wall; }, [this](std::string_view line) { log.emplace_back(line); }};
+    lines.observe(&machine.snapshot);
+    lines.on_open(3, {812, 1000, 1000});
+    const auto say = [&](const std::string& line, Duration waited = {}) {
+        lines.on_request(3, line, now, waited > Duration{} ? Arrival{.at = now - waited} : Arrival{});
+        lines.step(now += 5ms);
+        const auto answer = lines.next_line();
+        const auto parsed = answer ? nlohmann::json::parse(answer->text) : nlohmann::json{};
+        return parsed.value("ok", false) ? std::string("ok") : parsed["error"]["code"].get<std::string>();
+    };
+    const std::string write = R"("cmd":"drive_write","axis":"x","parameter":"P05.13","value":"300 ms")";
+    const auto sent = [&](std::int64_t us_ago) { return ",\"utime\":" + std::to_string(wall - us_ago) + "}"; };
+    EXPECT_EQ(say("{" + write + sent(1'000'001)), "command.stale");
+    EXPECT_EQ(say("{" + write + R"(,"valid_ms":50)" + sent(50'001)), "command.stale");
+    EXPECT_EQ(say("{" + write + sent(-1'000'001)), "command.stale");
+    EXPECT_EQ(say("{" + write + R"(,"valid_ms":0})"), "command.bad_value");
+    EXPECT_EQ(say("{" + write + "}", 1001ms), "command.stale");
+    EXPECT_EQ(say(R"({"cmd":"drive_store","axis":"x")" + sent(1'000'001)), "command.stale");
+    EXPECT_EQ(say(R"({"cmd":"drive_clear_turns","axis":"x")" + sent(1'000'001)), "command.stale");
+    EXPECT_TRUE(port.written.empty());
+    EXPECT_TRUE(log.empty());
+    EXPECT_EQ(say(R"({"cmd":"drive_read","axis":"x","parameter":"P05.13")" + sent(5'000'000)), "ok");
+    EXPECT_EQ(say(R"({"cmd":"drive_read","axis":"x","parameter":"P05.13","valid_ms":50})"), "request.unknown_key");
+    EXPECT_EQ(say("{" + write + sent(1'000'000)), "ok");
+    EXPECT_EQ(say("{" + write + "}", 1000ms), "ok");
+    EXPECT_EQ(port.written.size(), 2u);
+}
+
 }  // namespace
 }  // namespace taktwerk::hmi

@@ -252,6 +252,30 @@ TEST_F(RequestsTest, ARequestThatSaysWhenItWasSentIsJudgedByItsAge) {
     EXPECT_EQ(machine.submitted[0].expires, now + 100ms);
 }
 
+// What the gateway does not see is judged all the same: by the client's clock, and by how long it has waited here.
+TEST_F(RequestsTest, AHandOnASimulatedMachineThatComesTooLateIsRefused) {
+    std::vector<std::string> done;
+    requests.set_simulate([&](const std::string& line) -> Result<void> {
+        done.push_back(line);
+        return {};
+    });
+    const auto sent = [](std::int64_t us_ago) { return std::to_string(sent_at - us_ago); };
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"simulate","line":"input start 1","utime":)" + sent(1'000'001) + "}"), "command.stale");
+    EXPECT_EQ(code_for(R"({"id":2,"cmd":"simulate","line":"input start 1","valid_ms":200,"utime":)" + sent(200'001) + "}"),
+              "command.stale");
+    EXPECT_EQ(code_for(R"({"id":3,"cmd":"simulate","line":"input start 1","utime":)" + sent(-1'000'001) + "}"), "command.stale");
+    EXPECT_EQ(code_for(R"({"id":4,"cmd":"simulate","line":"input start 1","valid_ms":0})"), "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":5,"cmd":"simulate","line":"input start 1","valid_ms":10001})"), "command.bad_value");
+    // Of a client without a clock: it lay in the socket while the runtime stood still.
+    requests.on_request(1, R"({"id":6,"cmd":"simulate","line":"input start 1"})", now, {.at = now - 1001ms});
+    EXPECT_THAT(requests.next_line()->text, HasSubstr("command.stale"));
+    EXPECT_TRUE(done.empty());
+    requests.on_request(1, R"({"id":7,"cmd":"simulate","line":"input start 1"})", now, {.at = now - 1000ms});
+    EXPECT_EQ(requests.next_line()->text, R"({"id":7,"ok":true})");
+    EXPECT_EQ(ask(R"({"id":8,"cmd":"simulate","line":"input start 1","valid_ms":200,"utime":)" + sent(200'000) + "}")["ok"], true);
+    EXPECT_EQ(done.size(), 2u);
+}
+
 TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
     machine.snapshot.axes[0].state = axes::AxisState::DiscreteMotion;
     machine.snapshot.axes[0].actual_position = 12.5;
