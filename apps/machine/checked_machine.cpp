@@ -5,6 +5,7 @@
 #include "apps/machine/load.hpp"
 #include "core/installed_memory.hpp"
 #include "hmi_bridge/modbus/offer.hpp"
+#include "hmi_bridge/modbus/shown_value.hpp"
 #include "hmi_bridge/views/view_check.hpp"
 #include "runtime/check/machine_remarks.hpp"
 #include "runtime/check/recording_memory.hpp"

@@ -25,10 +25,11 @@ namespace fs = std::filesystem;
 constexpr std::string_view aside_name = ".aside-";
 
 Error not_written(const fs::path& path, int number) {
-    return {"bundle.not_written", path.string(), fmt::format("it cannot be written: {}", std::strerror(number)),
-            number == ENOSPC                      ? "make room on that disk"
-            : number == EACCES || number == EPERM ? "do it as the user that the folder belongs to, or with sudo"
-                                                  : "look at that disk"};
+    const char* remedy = "look at that disk";
+    if (number == ENOSPC || number == EDQUOT) remedy = "make room on that disk";
+    if (number == EACCES || number == EPERM) remedy = "do it as the user that the folder belongs to, or with sudo";
+    if (number == ENOENT || number == ENOTDIR) remedy = "name a folder that is there";
+    return {"bundle.not_written", path.string(), fmt::format("it cannot be written: {}", std::strerror(number)), remedy};
 }
 
 Error no_folder(const fs::path& path, int number) {
@@ -130,7 +131,12 @@ Result<void> write_new_file(const fs::path& path, std::string_view text) {
 Result<void> replace_file(const fs::path& path, std::string_view text) {
     const auto aside = beside(path);
     ::unlink(aside.c_str());
-    if (auto ok = write_new_file(aside, text); !ok) return ok;
+    if (auto ok = write_new_file(aside, text); !ok) {
+        ::unlink(aside.c_str());
+        auto error = ok.error();
+        error.subject = path.string();
+        return error;
+    }
     if (::rename(aside.c_str(), path.c_str()) != 0) return not_written(path, errno);
     return sync_folder(path.parent_path());
 }
