@@ -15,6 +15,7 @@ namespace taktwerk::apps {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -97,6 +98,32 @@ TEST_F(ReplayCommand, AnotherMachineFileIsSaidAndTheFirstSignalNamed) {
     EXPECT_THAT(replay.text, HasSubstr("axis "));
 }
 
+// z_down of pick_and_place.cpp is 90 mm, and stands once in the library: the lowest bit of its mantissa is turned over.
+TEST_F(ReplayCommand, AProgramThatIsOneBitAnotherIsNamedAtItsFirstCycle) {
+    record("demo.yaml", "12s");
+    auto library = text_of(TAKTWERK_BINARY_DIR "/programs/pick_and_place.so");
+    constexpr double z_down = 90;
+    const std::string constant(reinterpret_cast<const char*>(&z_down), sizeof z_down);
+    const auto at = library.find(constant);
+    ASSERT_NE(at, std::string::npos);
+    ASSERT_EQ(library.find(constant, at + 1), std::string::npos) << "it stands in more than one place";
+    library[at] = static_cast<char>(library[at] ^ 1);
+    std::ofstream(path("other.so"), std::ios::binary) << library;
+
+    const auto open_loop = command({"replay", path("run.twrec"), "--program", path("other.so"), "--quiet"});
+    EXPECT_EQ(open_loop.code, exit_ok) << open_loop.text;
+    EXPECT_THAT(open_loop.text, AllOf(HasSubstr("open loop"), HasSubstr("axis z: set ")));
+
+    const auto other = altered("demo.yaml", "library: pick_and_place.so", "library: " + path("other.so"));
+    const auto replay = command({"replay", path("run.twrec"), other, "--quiet"});
+    EXPECT_EQ(replay.code, exit_differs) << replay.text;
+    EXPECT_THAT(replay.text, AllOf(HasSubstr("program 'pick_and_place' is another one: crc32 "), HasSubstr("first difference: cycle "),
+                                   HasSubstr("axis z: set ")));
+
+    const auto same = command({"replay", path("run.twrec"), "--program", TAKTWERK_BINARY_DIR "/programs/pick_and_place.so", "--quiet"});
+    EXPECT_THAT(same.text, HasSubstr("identical: "));
+}
+
 TEST_F(ReplayCommand, UntilATimeShowsTheMachineAsItStoodThen) {
     record("demo.yaml", "5s");
 
@@ -154,7 +181,7 @@ TEST_F(ReplayCommand, WithWhatWasKeptTheRunBeginsAsItDid) {
 
 // Threads, a wake-up that is late, a clock that is nobody's: and yet the same again.
 TEST_F(ReplayCommand, ARunInRealTimeIsReplayedInVirtualTime) {
-    const auto file = altered("demo.yaml", "lcm: { enabled: true,", "socket: '" + path("socket") + "', lcm: { enabled: false,");
+    const auto file = altered("demo.yaml", "lcm: { enabled: true,", "socket: '" + path("socket") + "'\n  lcm: { enabled: false,");
     const auto run = command({"run", file, "--simulate", "--duration", "5s", "--record", path("run.twrec"), "--quiet"});
     ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
 
