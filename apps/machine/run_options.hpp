@@ -1,0 +1,33 @@
+#pragma once
+// What `taktwerk run` was asked for, and its two ways to do it.
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/machine/bundle_run.hpp"
+#include "apps/machine/load.hpp"
+
+namespace taktwerk::apps {
+
+struct RunOptions {
+    std::string start = "warm";
+    std::string run_before;  ///< what is to be said of it; empty: it ended in order
+    std::string file, trace, pcap, record, retain, evidence, recordings, history, hmi;
+    bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
+    double duration_s = 0;
+    std::string bundle, root;
+    unsigned tries = runtime::usual_tries;
+    std::shared_ptr<BundleRun> from_bundle{};  ///< with --bundle, once it is chosen
+};
+
+/// For the head of a recording (machine_recording.hpp); empty where none is made.
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+/// From one thread, as fast as it goes. Both return the exit code.
+int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts);
+/// In real time, on its bus or simulated. Behind a run that did not end in order it begins in manual mode.
+int run_real(LoadedFile loaded, RunOptions options, Facts facts);
+
+}  // namespace taktwerk::apps
