@@ -88,18 +88,20 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
         EXPECT_EQ(other.disturbed(), 0) << doing.back();
     }
     std::string said;
-    const auto file = (std::filesystem::temp_directory_path() / ("taktwerk-beside-" + std::to_string(::getpid()) + ".yaml")).string();
+    const auto folder = std::filesystem::temp_directory_path() / ("taktwerk-beside-" + std::to_string(::getpid()));
+    std::filesystem::create_directory(folder);
+    std::filesystem::copy_file(source / "config/machines/demo-cell.svg", folder / "demo-cell.svg");
+    const auto file = (folder / "beside.yaml").string();
     std::ifstream in(demo);
     std::string text((std::istreambuf_iterator<char>(in)), {});
     text = std::regex_replace(text, std::regex("interface: simulated"), "interface: twk0");
     text =
         std::regex_replace(text, std::regex("library: pick_and_place.so"), "library: " TAKTWERK_BINARY_DIR "/programs/pick_and_place.so");
-    text = std::regex_replace(text, std::regex("demo-cell.svg"), TAKTWERK_SOURCE_DIR "/config/machines/demo-cell.svg");
     std::ofstream(file) << text << "\n";
     EXPECT_EQ(run(cable.at_master({taktwerk, "run", file}), &said), exit_bus) << said;
     EXPECT_THAT(said, HasSubstr("another EtherCAT master is sending on this cable"));
     EXPECT_THAT(said, HasSubstr("02:46:4f:52:00:42"));
-    std::filesystem::remove(file);
+    std::filesystem::remove_all(folder);
 
     EXPECT_EQ(other.disturbed(), 0) << "its slave lost its address, or stopped answering";
     slaves.signal(SIGTERM);
