@@ -393,7 +393,9 @@ int run_real(LoadedFile loaded, RunOptions options, Facts facts) {
             mark->before()->process);
     }
     const int code = run_here(std::move(loaded), options, std::move(facts));
-    if (mark) mark->ended();
+    // Behind a crash a start that fails (the bus is not there yet) changes nothing: whoever tries again is no operator either.
+    const bool ran = code == exit_ok || code == exit_alarm;
+    if (mark && (ran || !mark->before())) mark->ended();
     return code;
 }
 

@@ -86,6 +86,7 @@ TEST_F(ServiceRun, ACycleThatHangsIsNotFed) {
     ASSERT_TRUE(heard->gets("READY=1", 30s)) << run.text();
     ASSERT_TRUE(run.says("STUCK", 30s)) << run.text();
     const auto fed = heard->count("WATCHDOG=1");
+    EXPECT_GT(fed, 0u) << "before it hung it was";
     ::poll(nullptr, 0, 1000);
     EXPECT_EQ(heard->count("WATCHDOG=1"), fed);
 }
@@ -98,6 +99,10 @@ TEST_F(ServiceRun, ARestartBehindACrashIsInManualMode) {
         EXPECT_EQ(mode(), "automatic") << "an ordinary start";
         run.signal(SIGKILL);
         EXPECT_EQ(run.wait(10s), 128 + SIGKILL);
+    }
+    {  // and one that does not come up in between changes nothing
+        Child run({taktwerk, "run", file, "--duration", "1ms"});
+        EXPECT_EQ(run.wait(30s), exit_bus) << run.text();
     }
     heard.emplace((folder / "notify").string());
     {
