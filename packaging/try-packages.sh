@@ -14,6 +14,7 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
 
 step "a Debian 12 root"
+# shellcheck disable=SC2016 # apt's own
 mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -1)
 debootstrap --variant=minbase bookworm "$root" "$mirror" >"$root.log" 2>&1 || { tail -5 "$root.log" >&2; fail "debootstrap"; }
 rm -f "$root.log"
@@ -31,7 +32,9 @@ inside sh -c 'apt-get install -q -y --no-install-recommends /packages/taktwerk_*
 ok
 
 step "a user of its own, and a folder for machine files"
-inside id taktwerk >/dev/null && inside id -nG taktwerk-hmi | grep -qw taktwerk && [[ -d $root/etc/taktwerk ]] || fail "not there"
+inside id taktwerk >/dev/null || fail "no user taktwerk"
+inside id -nG taktwerk-hmi | grep -qw taktwerk || fail "the page's user is not in the group"
+[[ -d $root/etc/taktwerk ]] || fail "no /etc/taktwerk"
 ok
 
 step "no compiler and no node came along"
@@ -75,8 +78,10 @@ inside sh -c 'apt-get install -q -y --reinstall /packages/taktwerk_*.deb /packag
 ok
 
 step "ended in order"
-inside taktwerk shutdown >/dev/null && wait "$run" || { cat "$root/run.log" >&2; fail "run"; }
-kill "$hmi" && wait "$hmi" || true
+inside taktwerk shutdown >/dev/null || fail "shutdown"
+wait "$run" || { cat "$root/run.log" >&2; fail "run"; }
+kill "$hmi"
+wait "$hmi" || fail "the page: $?"
 ok
 
 step "a program is built against taktwerk-dev"

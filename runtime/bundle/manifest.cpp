@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/bundle/container.hpp"
+#include "runtime/json_fields.hpp"
 
 namespace taktwerk::runtime {
 
@@ -46,41 +47,6 @@ std::int64_t seconds_of(std::string_view text) {
     return (sys_days{day}.time_since_epoch() / seconds{1}) + number(11, 2) * 3600 + number(14, 2) * 60 + number(17, 2);
 }
 
-/// Reads keys by their types; the first problem stays.
-class Keys {
-public:
-    Keys(const Json& json, std::string& problem) : json_(json), problem_(problem) {}
-    std::string text(const char* key, bool (*good)(std::string_view), const char* wanted) {
-        const auto* value = find(key);
-        if (value != nullptr && value->is_string())
-            if (auto text = value->get<std::string>(); good(text)) return text;
-        return wrong(key, wanted), std::string{};
-    }
-    std::uint64_t number(const char* key, std::uint64_t most) {
-        const auto* value = find(key);
-        if (value != nullptr && value->is_number_unsigned() && value->get<std::uint64_t>() <= most) return value->get<std::uint64_t>();
-        return wrong(key, "a whole number"), 0;
-    }
-    const Json& list(const char* key) {
-        static const Json none = Json::array();
-        const auto* value = find(key);
-        if (value != nullptr && value->is_array() && value->size() <= most_packed_files) return *value;
-        return wrong(key, "a list"), none;
-    }
-    void wrong(std::string_view key, std::string_view wanted) {
-        if (problem_.empty()) problem_ = fmt::format("\"{}\" is not {}", key, wanted);
-    }
-
-private:
-    const Json* find(const char* key) {
-        if (!json_.is_object()) return nullptr;
-        const auto found = json_.find(key);
-        return found == json_.end() ? nullptr : &*found;
-    }
-    const Json& json_;
-    std::string& problem_;
-};
-
 bool is_sum(std::string_view text) { return text.size() == 64 && all_hexadecimal(text); }
 bool is_abi(std::string_view text) { return text.size() == 16 && all_hexadecimal(text); }
 bool is_build_id(std::string_view text) { return text.size() <= 80 && all_hexadecimal(text); }
@@ -89,24 +55,24 @@ bool is_word(std::string_view text) { return !text.empty() && printable(text); }
 bool is_time(std::string_view text) { return seconds_of(text) >= 0; }
 
 BundledProgram program_of(const Json& json, std::string& problem) {
-    Keys keys(json, problem);
+    JsonFields keys(json, problem);
     BundledProgram program;
     program.name = keys.text("name", is_bundle_name, "a program's name");
     program.path = keys.text("path", is_packed_path, "a path in the bundle");
     const auto abi = keys.text("abi", is_abi, "16 hexadecimal digits");
     std::from_chars(abi.data(), abi.data() + abi.size(), program.abi, 16);
-    program.interface_version = keys.number("interface_version", 1u << 20);
+    program.interface_version = keys.number("interface_version", 0, 1u << 20);
     program.sdk = keys.text("sdk", is_word, "a version");
     program.build_id = keys.text("build_id", is_build_id, "hexadecimal digits");
     return program;
 }
 
 BundledFile file_of(const Json& json, std::string& problem) {
-    Keys keys(json, problem);
+    JsonFields keys(json, problem);
     BundledFile file;
     file.path = keys.text("path", is_packed_path, "a path in the bundle");
     file.kind = keys.text("kind", is_kind, "machine, drive, device, program, cam or image");
-    file.size = keys.number("size", largest_packed_file);
+    file.size = keys.number("size", 0, largest_packed_file);
     file.sha256 = keys.text("sha256", is_sum, "64 hexadecimal digits");
     return file;
 }
@@ -187,8 +153,8 @@ Result<Manifest> manifest_of(std::string_view text, const std::string& subject) 
         false);
     if (too_deep || json.is_discarded() || !json.is_object()) return wrong("it is no JSON of this kind");
     std::string problem;
-    Keys keys(json, problem);
-    if (const auto number = keys.number("taktwerk_bundle", 1u << 20); problem.empty() && number != Manifest::format)
+    JsonFields keys(json, problem);
+    if (const auto number = keys.number("taktwerk_bundle", 0, 1u << 20); problem.empty() && number != Manifest::format)
         return Error{"bundle.newer", subject,
                      fmt::format("its form has number {}, and this version knows number {}", number, Manifest::format),
                      "update Taktwerk on this computer, or make the bundle with its version"};
@@ -199,9 +165,9 @@ Result<Manifest> manifest_of(std::string_view text, const std::string& subject) 
     out.minimum_runtime = keys.text("minimum_runtime", is_word, "a version");
     out.target = keys.text("target", is_word, "a word");
     out.machine_file = keys.text("machine_file", is_packed_path, "a path in the bundle");
-    for (const auto& program : keys.list("programs")) out.programs.push_back(program_of(program, problem));
+    for (const auto& program : keys.list("programs", most_packed_files)) out.programs.push_back(program_of(program, problem));
     std::set<std::string, std::less<>> paths;
-    for (const auto& file : keys.list("files")) {
+    for (const auto& file : keys.list("files", most_packed_files)) {
         out.files.push_back(file_of(file, problem));
         if (!paths.insert(out.files.back().path).second && problem.empty())
             problem = fmt::format("'{}' stands there twice", out.files.back().path);

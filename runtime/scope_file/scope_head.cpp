@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/json_fields.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -37,70 +39,8 @@ Json signal_json(const RecordedSignal& s) {
     return out;
 }
 
-/// Reads keys by their types; the first problem stays.
-class Fields {
-public:
-    Fields(const Json& json, std::string& problem) : json_(json), problem_(problem) {
-        if (!json.is_object()) wrong("it", "an object");
-    }
-    std::string text(const char* key) {
-        const auto* value = find(key);
-        if (value && value->is_string()) return value->get<std::string>();
-        return wrong(key, "a text"), std::string{};
-    }
-    std::uint64_t number(const char* key, std::uint64_t least, std::uint64_t most) {
-        const auto* value = find(key);
-        if (value && value->is_number_integer() && (value->is_number_unsigned() || value->get<std::int64_t>() >= 0)) {
-            const auto n = value->get<std::uint64_t>();
-            if (n >= least && n <= most) return n;
-        }
-        return wrong(key, fmt::format("a whole number from {} to {}", least, most)), least;
-    }
-    std::int64_t any_number(const char* key) {
-        const auto* value = find(key);
-        if (value && value->is_number_integer()) return value->get<std::int64_t>();
-        return wrong(key, "a whole number"), 0;
-    }
-    double positive(const char* key) {
-        const auto* value = find(key);
-        if (value && value->is_number())
-            if (const auto n = value->get<double>(); std::isfinite(n) && n > 0) return n;
-        return wrong(key, "a number above 0"), 1;
-    }
-    bool flag(const char* key) {
-        const auto* value = find(key);
-        if (value && value->is_boolean()) return value->get<bool>();
-        return wrong(key, "true or false"), false;
-    }
-    template <std::size_t Count>
-    std::size_t word(const char* key, const std::array<std::string_view, Count>& words) {
-        const auto given = text(key);
-        for (std::size_t i = 0; i < Count; ++i)
-            if (words[i] == given) return i;
-        return wrong(key, "a known word"), 0;
-    }
-    const Json& list(const char* key) {
-        static const Json none = Json::array();
-        const auto* value = find(key);
-        if (value && value->is_array()) return *value;
-        return wrong(key, "a list"), none;
-    }
-    void wrong(std::string_view key, std::string_view wanted) {
-        if (problem_.empty()) problem_ = fmt::format("\"{}\" is not {}", key, wanted);
-    }
-
-private:
-    const Json* find(const char* key) {
-        if (!json_.is_object()) return nullptr;
-        const auto found = json_.find(key);
-        return found == json_.end() ? nullptr : &*found;
-    }
-    const Json& json_;
-    std::string& problem_;
-};
-
 RecordedSignal signal_of(const Json& json, std::size_t words, std::string& problem) {
-    Fields fields(json, problem);
+    JsonFields fields(json, problem);
     RecordedSignal s;
     s.name = fields.text("name");
     s.unit = fields.text("unit");
@@ -155,7 +95,7 @@ Result<ScopeHead> parse_head(std::string_view text, const std::string& subject) 
         false);
     if (too_deep || json.is_discarded()) return damaged("it is no JSON of this kind");
     std::string problem;
-    Fields fields(json, problem);
+    JsonFields fields(json, problem);
     constexpr auto many = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / 4);
     ScopeHead head;
     head.machine = fields.text("machine");
@@ -165,7 +105,7 @@ Result<ScopeHead> parse_head(std::string_view text, const std::string& subject) 
     head.utime = fields.any_number("utime");
     head.cut = fields.flag("cut");
     for (const auto& alarm : fields.list("alarms")) {
-        Fields of_alarm(alarm, problem);
+        JsonFields of_alarm(alarm, problem);
         head.alarms.push_back({static_cast<std::uint16_t>(of_alarm.number("id", 0, 65535)), of_alarm.text("name"), of_alarm.text("source"),
                                of_alarm.text("english"), of_alarm.text("chinese"), of_alarm.number("cycle", 0, many)});
         if (!problem.empty()) break;
