@@ -8,28 +8,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What stands there, if it is of that kind: an answer may be anybody's.
-template <class T>
-T get(const Json& object, const char* key, T otherwise = {}) {
-    if (!object.is_object()) return otherwise;
-    const auto found = object.find(key);
-    if (found == object.end()) return otherwise;
-    if constexpr (std::is_same_v<T, std::string>) {
-        if (!found->is_string()) return otherwise;
-    } else if constexpr (std::is_same_v<T, bool>) {
-        if (!found->is_boolean()) return otherwise;
-    } else if (!found->is_number()) {
-        return otherwise;
-    }
-    return found->template get<T>();
-}
-
-const Json& part(const Json& object, const char* key) {
-    static const Json nothing;
-    if (!object.is_object()) return nothing;
-    const auto found = object.find(key);
-    return found == object.end() ? nothing : *found;
-}
+/// A part that may not be there; one of another type throws, as everything here does (understood() of remote.hpp makes words of it).
+Json part(const Json& object, const char* key, const Json& otherwise) { return object.value(key, otherwise); }
 
 bool stops_something(const std::string& reaction) { return reaction != "none" && reaction != "warn"; }
 
@@ -46,37 +26,37 @@ void judge(Health& h, bool cycling, const std::string& progress) {
 
 }  // namespace
 
-Health health_of(const Json& hello, const Json& state) {
+Health health_of(const Json& hello, const Json& told) {
+    const bool cycles = told.is_object();
+    const auto& state = cycles ? told : Json::object();
     Health h;
-    h.machine = get<std::string>(hello, "machine");
-    h.version = get<std::string>(hello, "version");
-    h.process = get<long long>(hello, "pid");
-    h.uptime_s = get<double>(hello, "uptime_s");
-    h.phase = get<std::string>(state, "phase");
-    h.mode = get<std::string>(state, "mode");
-    h.simulated = get<bool>(state, "simulated");
-    h.emergency_stop = get<bool>(state, "emergency_stop");
-    h.bus = get<std::string>(part(state, "bus"), "phase");
-    h.frames_lost = get<double>(part(state, "bus"), "frames_lost");
-    const auto& statistics = part(state, "statistics");
-    h.cycles = get<double>(statistics, "cycles");
-    h.missed = get<double>(statistics, "missed_ticks");
-    h.lateness_max_us = get<double>(statistics, "lateness_max_ns") / 1000;
-    h.compute_max_us = get<double>(statistics, "compute_max_ns") / 1000;
-    if (const auto& axes = part(state, "axes"); axes.is_array())
-        for (const auto& axis : axes) {
-            ++h.axes;
-            h.powered += get<bool>(axis, "powered") ? 1 : 0;
-            h.homed += get<bool>(axis, "homed") ? 1 : 0;
-        }
-    if (const auto& programs = part(state, "programs"); programs.is_array())
-        for (const auto& program : programs) h.programs.emplace_back(get<std::string>(program, "name"), get<std::string>(program, "state"));
-    if (const auto& alarms = part(state, "alarms"); alarms.is_array())
-        for (const auto& alarm : alarms)
-            if (auto reaction = get<std::string>(alarm, "reaction"); stops_something(reaction))
-                h.alarms.push_back({get<std::string>(alarm, "source"), get<std::string>(alarm, "name"), get<std::string>(alarm, "english"),
-                                    std::move(reaction), get<bool>(alarm, "standing")});
-    judge(h, get<bool>(hello, "cycling") && state.is_object(), get<std::string>(hello, "progress"));
+    h.machine = hello.value("machine", std::string{});
+    h.version = hello.value("version", std::string{});
+    h.process = hello.value("pid", 0LL);
+    h.uptime_s = hello.value("uptime_s", 0.0);
+    h.phase = state.value("phase", std::string{});
+    h.mode = state.value("mode", std::string{});
+    h.simulated = state.value("simulated", false);
+    h.emergency_stop = state.value("emergency_stop", false);
+    h.bus = part(state, "bus", Json::object()).value("phase", std::string{});
+    h.frames_lost = part(state, "bus", Json::object()).value("frames_lost", 0.0);
+    const auto statistics = part(state, "statistics", Json::object());
+    h.cycles = statistics.value("cycles", 0.0);
+    h.missed = statistics.value("missed_ticks", 0.0);
+    h.lateness_max_us = statistics.value("lateness_max_ns", 0.0) / 1000;
+    h.compute_max_us = statistics.value("compute_max_ns", 0.0) / 1000;
+    for (const auto& axis : part(state, "axes", Json::array())) {
+        ++h.axes;
+        h.powered += axis.value("powered", false) ? 1 : 0;
+        h.homed += axis.value("homed", false) ? 1 : 0;
+    }
+    for (const auto& program : part(state, "programs", Json::array()))
+        h.programs.emplace_back(program.value("name", std::string{}), program.value("state", std::string{}));
+    for (const auto& alarm : part(state, "alarms", Json::array()))
+        if (auto reaction = alarm.value("reaction", std::string{}); stops_something(reaction))
+            h.alarms.push_back({alarm.value("source", std::string{}), alarm.value("name", std::string{}),
+                                alarm.value("english", std::string{}), std::move(reaction), alarm.value("standing", false)});
+    judge(h, hello.value("cycling", false) && cycles, hello.value("progress", std::string{}));
     return h;
 }
 

@@ -26,7 +26,8 @@ struct Health {
     [[nodiscard]] bool well() const noexcept { return unwell.empty(); }
 };
 
-/// From the answers to `hello` and `state`; `state` null: it does not cycle yet. What is missing in them counts as unwell.
+/// From the answers to `hello` and `state`; `state` null: it does not cycle yet. What is missing in them counts as unwell; what is of another type throws
+/// nlohmann's exception (remote.hpp's understood() is for that).
 [[nodiscard]] Health health_of(const nlohmann::ordered_json& hello, const nlohmann::ordered_json& state);
 
 [[nodiscard]] std::string health_text(const Health& health);

@@ -14,15 +14,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-int show(const RemoteOptions& options) {
-    auto client = hmi::Client::connect(options.machine);
-    if (!client) return report(options, client.error());
-    const auto answer = client->request({{"cmd", "hello"}});
-    if (!answer) return report(options, answer.error());
-    const auto hello = answer->is_object() && answer->contains("hello") ? (*answer)["hello"] : Json{};
-    const auto state = state_of(*client);
+int show(const RemoteOptions& options, hmi::Client& client) {
+    const auto hello = client.request({{"cmd", "hello"}});
+    if (!hello) return report(options, hello.error());
+    const auto state = state_of(client);
     if (!state && state.error().code != "state.not_yet") return report(options, state.error());
-    const auto health = health_of(hello, state ? *state : Json{});
+    const auto health = health_of(hello->value("hello", Json::object()), state ? *state : Json{});
     if (options.json) fmt::print("{}\n", health_json(health).dump(-1, ' ', false, Json::error_handler_t::replace));
     else fmt::print("{}", health_text(health));
     if (health.well()) return exit_ok;
@@ -36,7 +33,9 @@ void add_status(CLI::App& app, Action& action) {
         "status", "is the machine well? exit code 0: yes, 4: its bus is not operational, 6: it does not run, 8: something stops it");
     auto options = std::make_shared<RemoteOptions>();
     add_remote_options(*sub, *options);
-    sub->callback([&action, options] { action = [options] { return show(*options); }; });
+    sub->callback([&action, options] {
+        action = [options] { return with_machine(*options, [&](hmi::Client& client) { return show(*options, client); }); };
+    });
 }
 
 }  // namespace taktwerk::apps

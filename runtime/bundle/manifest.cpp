@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/bundle/container.hpp"
-#include "runtime/json_fields.hpp"
+#include "runtime/json/json_fields.hpp"
 
 namespace taktwerk::runtime {
 

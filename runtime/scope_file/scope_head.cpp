@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/json_fields.hpp"
+#include "runtime/json/json_fields.hpp"
 
 namespace taktwerk::runtime {
 

@@ -1,6 +1,6 @@
 #pragma once
 // A JSON object of strangers, read key by key: what is not there or of another type is a problem in words, never an exception. Not real-time.
-// For the folders that read files with JSON in them (scope_file/, bundle/); each brings its JSON library.
+// For the folders that read files with JSON in them (../scope_file/, ../bundle/).
 
 #include <array>
 #include <cmath>
