@@ -2,7 +2,6 @@
 
 #include <execinfo.h>
 #include <fmt/format.h>
-#include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <sys/prctl.h>
@@ -16,6 +15,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "core/seccomp_architecture.hpp"
+
 namespace taktwerk {
 namespace {
 
@@ -27,14 +28,6 @@ constexpr std::array allowed_always{
 };
 
 constexpr std::size_t most_further = 16;
-
-#if defined(__x86_64__)
-constexpr std::uint32_t this_architecture = AUDIT_ARCH_X86_64;
-#elif defined(__aarch64__)
-constexpr std::uint32_t this_architecture = AUDIT_ARCH_AARCH64;
-#else
-#error "which AUDIT_ARCH is this CPU?"
-#endif
 
 /// What the trapped call returns: the kernel leaves that to the handler.
 void answer_not_implemented(ucontext_t& context) {
@@ -110,7 +103,7 @@ Result<void> restrict_cycle_thread_system_calls(SystemCallMode mode, std::span<c
         add(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
     };
     add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch)));
-    add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, this_architecture, 1, 0));
+    add(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, seccomp_architecture, 1, 0));
     add(BPF_STMT(BPF_RET | BPF_K, otherwise));
     add(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)));
     for (const long number : allowed_always) allow(number);

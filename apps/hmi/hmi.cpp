@@ -74,7 +74,7 @@ Result<std::unique_ptr<hmi::web::WebServer>> open_server(const hmi::web::ServerO
 }
 
 int serve(const HmiOptions& options) {
-    drop_privileges();
+    if (const auto dropped = drop_privileges(); !dropped) print_warning(dropped.error());
     const auto listen = listen_address(options.listen.empty() ? fmt::format("127.0.0.1:{}", first_port) : options.listen);
     if (!listen) {
         print_error(listen.error());

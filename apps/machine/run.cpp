@@ -2,6 +2,7 @@
 #include <memory>
 #include <string>
 
+#include "apps/machine/fence.hpp"
 #include "apps/machine/machine_recording.hpp"
 #include "apps/machine/recordings_folder.hpp"
 #include "apps/machine/run_options.hpp"
@@ -78,6 +79,9 @@ void add_run(CLI::App& app, Action& action) {
                 print_error(chosen.error());
                 return static_cast<int>(chosen.error().code == "usage.run" ? exit_usage : exit_bad_file);
             }
+            // Before programs: they are code of somebody else's, and begin when they are loaded.
+            if (!options->virtual_time)
+                if (const auto up = fence_machine(); !up && !options->quiet) print_warning(up.error());
             auto loaded = load(options->file, loading);
             if (!loaded) return static_cast<int>(exit_bad_file);
             if (options->without_events) loaded->machine.simulation.events.clear();

@@ -1,8 +1,13 @@
 // The built command as a service: what its manager hears, in which order, and what a restart after a crash may do.
 
+#include <linux/capability.h>
+
+#include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -117,6 +122,30 @@ TEST_F(ServiceRun, ARestartBehindACrashIsInManualMode) {
     Child run({taktwerk, "run", file});
     ASSERT_TRUE(heard->gets("READY=1", 30s)) << run.text();
     EXPECT_EQ(mode(), "automatic") << "the one before ended in order";
+}
+
+// docs/security.md: each thread, also those of libraries, and whatever it starts.
+TEST_F(ServiceRun, ItHasGivenUpWhatNoMachineNeeds) {
+    Child run({taktwerk, "run", machine()});
+    ASSERT_TRUE(heard->gets("READY=1", 30s)) << run.text();
+    constexpr std::uint64_t kept = 1ULL << CAP_NET_RAW | 1ULL << CAP_NET_ADMIN | 1ULL << CAP_BPF | 1ULL << CAP_NET_BIND_SERVICE |
+                                   1ULL << CAP_SYS_NICE | 1ULL << CAP_IPC_LOCK | 1ULL << CAP_DAC_OVERRIDE | 1ULL << CAP_CHOWN |
+                                   1ULL << CAP_FOWNER;
+    std::size_t threads = 0;
+    for (const auto& thread : std::filesystem::directory_iterator("/proc/" + std::to_string(run.pid()) + "/task")) {
+        ++threads;
+        std::ifstream status(thread.path() / "status");
+        std::map<std::string, std::string> fields;
+        for (std::string name, value; status >> name && std::getline(status, value);)
+            fields[name] = value.substr(std::min(value.size(), value.find_first_not_of(" \t")));
+        EXPECT_EQ(fields["NoNewPrivs:"], "1");
+        EXPECT_EQ(fields["Seccomp:"], "2");
+        for (const char* set : {"CapPrm:", "CapEff:", "CapInh:", "CapAmb:"})
+            EXPECT_EQ(std::stoull("0" + fields[set], nullptr, 16) & ~kept, 0u) << set << fields[set];
+    }
+    EXPECT_GT(threads, 4u);
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(20s), exit_ok);
 }
 
 TEST_F(ServiceRun, TheLogGoesToTheJournalOnlyWhereTheOutputIsTheJournals) {
