@@ -28,8 +28,8 @@ bool Mapping::map(std::size_t size, int descriptor, std::uint64_t offset) noexce
 }
 
 Result<std::unique_ptr<XdpSocket>> XdpSocket::open(std::string_view interface, unsigned index) {
-    // The kernel gives a queue free some time after who had it is gone: a run that follows the last one waits for it.
-    constexpr Duration patience = std::chrono::milliseconds{300}, pause = std::chrono::milliseconds{5};
+    // The kernel gives a queue free some time after who had it is gone: a run that follows the last one waits for it, longer where every CPU is busy.
+    constexpr Duration patience = std::chrono::seconds{1}, pause = std::chrono::milliseconds{5};
     SystemClock clock;
     const Instant end = clock.now() + patience;
     for (;;) {

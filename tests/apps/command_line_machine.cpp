@@ -265,6 +265,27 @@ TEST_F(CommandLine, AResetThatIsInVainSaysWhyAtOnce) {
     EXPECT_THAT(answer.text, AllOf(HasSubstr("E.017"), HasSubstr("switch off and on")));
 }
 
+// A frozen runtime (a debugger, a stopped container) finds all that was asked of it meanwhile when it goes on: too late.
+TEST_F(CommandLine, WhatWasAskedOfAFrozenRuntimeIsNotDoneWhenItGoesOn) {
+    Child runtime({taktwerk, "run", file("machines/relaxed.yaml", text_of(private_machine()) + "simulation: { supervision: relaxed }\n"),
+                   "--simulate"});
+    ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
+    const auto faulted = [&] {
+        ::poll(nullptr, 0, 300);
+        const auto alarms = to_machine({"alarms"});
+        EXPECT_EQ(alarms.code, exit_ok) << alarms.text;
+        return alarms.text.find("E.017") != std::string::npos;
+    };
+    runtime.signal(SIGSTOP);
+    const auto asked = to_machine({"simulate", "drive-fault", "x", "0x5530"});
+    EXPECT_EQ(asked.code, exit_no_runtime) << asked.text;
+    EXPECT_THAT(asked.text, HasSubstr("did not answer in time"));
+    runtime.signal(SIGCONT);
+    EXPECT_FALSE(faulted());
+    EXPECT_EQ(to_machine({"simulate", "drive-fault", "x", "0x5530"}).code, exit_ok) << "the control";
+    EXPECT_TRUE(faulted());
+}
+
 TEST_F(CommandLine, ShutDownOnCommandIsAGoodEnd) {
     Child runtime({taktwerk, "run", private_machine()});
     ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();

@@ -28,7 +28,7 @@ TEST(GearWalks, CatchUpInsideWhatTheMasterDid) {
     EXPECT_GT(counts.measured, counts.cycles / 5);
     for (const long each : {counts.hard_stops, counts.hard_stops_on_the_way, counts.taken_away, counts.timed, counts.outside})
         EXPECT_GT(each, walked.walks / 4);
-    EXPECT_GT(counts.reversals, walked.walks / 10);
+    EXPECT_GT(counts.reversals, walked.walks / 20);
 }
 
 }  // namespace

@@ -252,7 +252,9 @@ private:
         const bool beside = last_.layer != 0 || next.layer != 0;
         // In the cycle in which the base comes to rest the view shows no limiter any more, nor its command, which may have had one cycle to stop in.
         const bool base_ends = last_.stops || (last_.kind != CommandKind::none && next.kind == CommandKind::none);
-        const bool addition_stops = beside && (next.stops || base_ends || next.covered == last_.covered);
+        // One that was halted in the scan in which it came has covered nothing, whatever the one before it had.
+        const bool never_moved = next.layer != last_.layer && next.covered == 0;
+        const bool addition_stops = beside && (next.stops || base_ends || next.covered == last_.covered || never_moved);
         const bool jerked = std::isfinite(most_jerk) && !fed && !coupled && !by_table && !rests_now && !addition_stops;
         const double speed_grain = 1e-9 * system.velocity;
 

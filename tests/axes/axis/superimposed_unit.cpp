@@ -41,6 +41,30 @@ TEST(Superimposed, AddsToTheBaseAndLeavesItAlone) {
     EXPECT_EQ(rig.view().state, AxisState::Standstill);
 }
 
+// A halt of an addition that came in the same scan: it takes over what moved before, which was just turning round and needs more than its jerk to end
+// there (docs/motion/decisions.md: MC_HaltSuperimposed never reverses). Nothing has been covered since.
+TEST(Superimposed, AHaltInTheScanOfItsAdditionEndsWhatMovedBefore) {
+    Rig rig;
+    rig.power_on();
+    rig.accept(at_velocity(20));
+    rig.run(200);
+    rig.accept(superimposed(10));
+    rig.run(200);
+    ASSERT_NEAR(rig.view().set_velocity, 40, 1e-9);
+    rig.accept(superimposed(-10));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_velocity < 21.5; }));
+    ASSERT_GT(rig.view().set_velocity, 20);
+    ASSERT_LT(rig.view().set_acceleration, -300);  // a^2 / (2 v) is more than the 20000 u/s3 of each
+    rig.accept(superimposed(5));
+    const auto id = rig.accept(halt_superimposed());
+    for (Patience patience; patience.lasts(rig.status(id) != CommandStatus::done);) {
+        rig.step();
+        ASSERT_GE(rig.view().set_velocity, 20 - 1e-9);
+        ASSERT_EQ(rig.view().superimposed_covered, 0);
+    }
+    EXPECT_NEAR(rig.view().set_velocity, 20, 1e-9);
+}
+
 // On a base that is at standstill: what moves is not in position, and the jerk limit is written at standstill only.
 TEST(Superimposed, AnAxisThatOnlyTheAdditionMovesIsNotInPosition) {
     auto config = trapezoids();
