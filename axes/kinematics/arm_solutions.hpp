@@ -43,7 +43,7 @@ struct ArmSolutions {
 };
 
 /// Rounding that a pose at the very edge of the reach may be outside by, as a share of the reach: it counts as on the edge.
-inline constexpr double edge_rounding = 1e-12;
+inline constexpr double edge_rounding = 1e-11;
 /// How far an orientation may be from what an arm of fewer than six joints can do, rad.
 inline constexpr double tilt_rounding = 1e-9;
 

@@ -67,8 +67,8 @@ ArmSolutions SixArm::solve(const Frame<double>& flange, const Joints& near) cons
             if (distance(joints, found.at[static_cast<std::size_t>(k)].joints) < same_way) return;
         found.add(joints, branch(joints));
     };
-    for (int i = 0; i < seeds.count; ++i) add(seeds.at[static_cast<std::size_t>(i)].joints);
-    if (found.count < 8) add(near);
+    add(near);
+    for (int i = 0; i < seeds.count && found.count < 8; ++i) add(seeds.at[static_cast<std::size_t>(i)].joints);
     return found;
 }
 

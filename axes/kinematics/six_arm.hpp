@@ -26,7 +26,8 @@ public:
         return chain_.forward(joints);
     }
     [[nodiscard]] Jacobian jacobian(const Joints& joints) const noexcept { return Chain::jacobian(chain_.frames(joints)); }
-    /// All ways. Without a closed form: those of the neighbour that Newton's method brought to an end, each once.
+    /// All ways. Without a closed form: those that Newton's method reached from `near` and from the
+    /// neighbour's, each once; there may be more.
     [[nodiscard]] ArmSolutions solve(const Frame<double>& flange, const Joints& near) const noexcept;
     /// Of the ways that answer `wanted` the one nearest to `near`, for arms without a closed form: refines only what is asked for.
     [[nodiscard]] ArmSolutions solve_one(const Frame<double>& flange, const Branch& wanted, const Joints& near) const noexcept;

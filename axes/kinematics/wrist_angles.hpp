@@ -8,8 +8,8 @@
 namespace taktwerk::axes {
 
 /// Below this sine of the middle angle the outer two are one rotation: the first keeps what is handed in, and the third takes the rest. The
-/// orientation is wrong by at most this, rad.
-inline constexpr double wrist_held_below = 1e-10;
+/// orientation is wrong by at most twice this, rad.
+inline constexpr double wrist_held_below = 1e-12;
 
 struct WristAngles {
     double first = 0, second = 0, third = 0;

@@ -52,7 +52,8 @@ TEST(KnownPoses, Tx40StandsUpBesideItsAxis) {
 TEST(KnownPoses, Ur5eAtZeroAndUp) {
     expect_pose(ur5e(), {}, posed(-.425 - .3922, -.1333 - .0996, .1625 - .0997, 0, 0, right));
     // Upright: axis 2 at -90, axis 4 at -90.
-    expect_pose(ur5e(), degrees({0, -90, 0, -90, 0, 0}), composed(posed(0, -.1333 - .0996, .1625 + .425 + .3922 + .0997, 0, 0, right), posed(0, 0, 0, -2 * right, 0, 0)));
+    expect_pose(ur5e(), degrees({0, -90, 0, -90, 0, 0}),
+                composed(posed(0, -.1333 - .0996, .1625 + .425 + .3922 + .0997, 0, 0, right), posed(0, 0, 0, -2 * right, 0, 0)));
 }
 
 // Worked out row by row: the upper arm up, the forearm to the front, the flange beside it. J3 does not change when J2 moves alone, and the
@@ -60,7 +61,8 @@ TEST(KnownPoses, Ur5eAtZeroAndUp) {
 TEST(KnownPoses, Crx10AtZeroAndWithJ2Alone) {
     const Kinematics crx = made(crx_10ia());
     EXPECT_LT((position_of(crx.forward({}, {}).pose) - Eigen::Vector3d(.540 + .160, -.150, .540)).norm(), 1e-12);
-    EXPECT_LT((position_of(crx.forward(degrees({0, 90, 0, 0, 0, 0}), {}).pose) - Eigen::Vector3d(.540 + .540 + .160, -.150, 0)).norm(), 1e-12);
+    EXPECT_LT((position_of(crx.forward(degrees({0, 90, 0, 0, 0, 0}), {}).pose) - Eigen::Vector3d(.540 + .540 + .160, -.150, 0)).norm(),
+              1e-12);
 }
 
 TEST(KnownPoses, ScaraBentToTheLeft) {
@@ -78,7 +80,8 @@ TEST(KnownPoses, PalletizerKeepsItsFlangeLevel) {
 // All arms level: the rods span from 502.5 mm, so they hang by sqrt(0.8^2 - 0.5025^2) = 0.62249 m. Straight down: 148 mm, 354.5 mm lower.
 TEST(KnownPoses, FlexpickerHangsBelowItsMiddle) {
     expect_pose(flexpicker(), {}, posed(0, 0, -std::sqrt(.800 * .800 - .5025 * .5025), 0, 0, 0));
-    expect_pose(flexpicker(), degrees({90, 90, 90, 45, 0, 0}), posed(0, 0, -.3545 - std::sqrt(.800 * .800 - .148 * .148), 45 * degree, 0, 0));
+    expect_pose(flexpicker(), degrees({90, 90, 90, 45, 0, 0}),
+                posed(0, 0, -.3545 - std::sqrt(.800 * .800 - .148 * .148), 45 * degree, 0, 0));
 }
 
 // 3-4-5: with the platform below the first tower by 0.269 its own rod hangs straight down.

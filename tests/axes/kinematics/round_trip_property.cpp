@@ -19,13 +19,24 @@ constexpr double allowed = 1e-9;
 double way_round(double a, double b) { return std::abs(std::remainder(a - b, 2 * std::numbers::pi)); }
 
 struct Found {
-    std::size_t poses = 0, ways = 0, none = 0, lost = 0;
+    std::size_t poses = 0, ways = 0, none = 0, lost = 0, from_afar = 0;
     double position = 0, angle = 0;
 };
 
 std::ostream& operator<<(std::ostream& out, const Found& f) {
     return out << f.poses << " poses, " << f.ways << " ways, worst " << f.position << " m, " << f.angle << " rad; no way to " << f.none
-               << ", another way than it came " << f.lost;
+               << ", another way than it came " << f.lost << (f.from_afar > 0 ? ", from afar " + std::to_string(f.from_afar) : "");
+}
+
+/// Do flags and turns stay as they are when the joints move a little?
+bool settled(const Kinematics& kinematics, const Joints& axes) {
+    for (std::size_t i = 0; i < kinematics.joint_count(); ++i)
+        for (const double little : {-1e-7, 1e-7}) {
+            Joints beside = axes;
+            beside[i] += little;
+            if (!(kinematics.configuration(beside) == kinematics.configuration(axes))) return false;
+        }
+    return true;
 }
 
 class RoundTrip : public ::testing::TestWithParam<PublishedArm> {};
@@ -41,7 +52,8 @@ TEST_P(RoundTrip, EveryWayLeadsBackToThePose) {
 
     const std::size_t cases = property_cases(numeric ? 1000 : 5000);
     for (std::size_t i = 0; i < cases && !HasFailure(); ++i) {
-        const Joints q = random.next(arm, rotary);
+        Joints q = random.next(arm, rotary);
+        if (std::holds_alternative<BeamGantryShape>(arm.description.arm)) q[1] = q[0];  // it is set square
         SCOPED_TRACE(::testing::Message() << "case " << i << " " << ::testing::PrintToString(q));
         const ForwardResult there = kinematics.forward(q, tool);
         if (there.miss.fault == KinematicFault::does_not_close) continue;
@@ -50,7 +62,8 @@ TEST_P(RoundTrip, EveryWayLeadsBackToThePose) {
         const AllAxisSolutions ways = kinematics.inverse_all(there.pose, tool, q);
 
         ++found.poses;
-        if (ways.count == 0) ++found.none;
+        const double nearness = kinematics.singularity(q).measure;
+        if (ways.count == 0 && nearness > 1e-9) ++found.none;
         bool came_back = false;
         for (int k = 0; k < ways.count; ++k) {
             const AxisSolution& way = ways.at[static_cast<std::size_t>(k)];
@@ -66,20 +79,19 @@ TEST_P(RoundTrip, EveryWayLeadsBackToThePose) {
             double furthest = 0;
             for (std::size_t j = 0; j < kinematics.joint_count(); ++j)
                 furthest = std::max(furthest, rotary[j] ? way_round(way.axes[j], q[j]) : std::abs(way.axes[j] - q[j]));
-            came_back = came_back || furthest < 1e-7 + 1e-12 / std::max(1e-9, kinematics.singularity(q).measure);
-            // Flags are those of the joints, but where their own sign is rounding.
-            if (kinematics.singularity(way.axes).measure > 1e-6) {
+            came_back = came_back || furthest < 1e-7 + 1e-14 / (nearness * nearness);
+            // Flags and turns are those of the joints, but where their sign is rounding.
+            if (settled(kinematics, way.axes)) {
                 ASSERT_EQ(way.configuration, kinematics.configuration(way.axes));
             }
         }
-        if (!came_back && kinematics.singularity(q).measure > 1e-6) ++found.lost;
+        if (!came_back && nearness > 1e-6) ++found.lost;
+        if (numeric) found.from_afar += kinematics.inverse_all(there.pose, tool, {}).count == 0 ? 0 : 1;
     }
 
     if (std::getenv("TAKTWERK_SOAK_FACTOR") != nullptr) std::cout << arm.name << ": " << found << "\n";
-    if (!numeric) {
-        EXPECT_EQ(found.none, 0U);
-        EXPECT_EQ(found.lost, 0U);
-    }
+    EXPECT_EQ(found.none, 0U);
+    EXPECT_EQ(found.lost, 0U);
     RecordProperty("worst_position", std::to_string(found.position));
 }
 
