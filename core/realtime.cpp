@@ -8,6 +8,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -139,6 +140,8 @@ Result<void> prefault_stack(std::size_t bytes) {
 }
 
 bool kernel_is_preempt_rt() {
+    utsname kernel{};
+    if (::uname(&kernel) == 0 && std::strstr(kernel.version, "PREEMPT_RT") != nullptr) return true;
     std::FILE* file = std::fopen("/sys/kernel/realtime", "re");
     if (file == nullptr) return false;
     const bool yes = std::fgetc(file) == '1';
