@@ -39,7 +39,7 @@ const std::vector<OwnedInclude>& owned_includes() {
         {std::regex("^yaml-cpp/"), {"config"}, {}, "yaml-cpp"},
         {std::regex("^pugixml"), {"ecat/esi"}, {}, "pugixml"},
         {std::regex("^modbus/modbus"), {"modbus/tcp", "tests"}, {}, "libmodbus"},
-        {std::regex("^zstd"), {"runtime/scope_file"}, {}, "zstd"},
+        {std::regex("^zstd"), {"runtime/compression"}, {}, "zstd"},
         {std::regex("^(boost/|hmi_bridge/web/server/(?!web_server))"), {"hmi_bridge/web/server"}, {}, "Boost"},
         {std::regex("^sodium(/|\\.h)"), {"hmi_bridge/web/account", "runtime/signature"}, {}, "libsodium"},
         {std::regex("^nlohmann/"), {"hmi_bridge", "apps", "runtime/json", "runtime/scope_file", "runtime/bundle"}, {}, "nlohmann-json"},

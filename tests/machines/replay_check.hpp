@@ -38,7 +38,7 @@ public:
     /// Up to now.
     [[nodiscard]] Recording& recording() {
         drain();
-        recording_.complete = !full_;
+        recording_.end = full_ ? RecordingEnd::limit : RecordingEnd::whole;
         recording_.lost = full_ ? 0 : recorder_->dropped();
         return recording_;
     }
@@ -50,8 +50,7 @@ private:
             full_ = true;  // the beginning is compared all the same
             return;
         }
-        recording_.frames.push_back({record.channel, record.time, recording_.bytes.size(), record.bytes.size()});
-        recording_.bytes.insert(recording_.bytes.end(), record.bytes.begin(), record.bytes.end());
+        recording_.add(record);
     }
 
     static constexpr std::size_t most = std::size_t{512} << 20;
