@@ -115,6 +115,20 @@ public:
     void release_stop(CommandId id, Owner owner) noexcept;
     ErrorId renew_jog(CommandId id, double velocity, Owner owner) noexcept;
 
+    // --- a group's hand (axes/group/) -------------------------------------------------------------------------------------
+    /// Why it cannot follow a group that `owner` commands: not powered, not at Standstill, with commands of its own [member_moves], ... Nothing is
+    /// changed.
+    [[nodiscard]] ErrorId refuses_group(Owner owner) noexcept;
+    /// From now on, SynchronizedMotion: its set-points are what lead() gives in each cycle before plan(), also the one of this cycle. Everybody
+    /// else's motion is refused with axis_grouped; errors, emergency stop, power and another party's hand end it at once. `instance`: the block
+    /// for whom, to be named to people.
+    Submitted join_group(const void* instance, Owner owner) noexcept;
+    /// u, u/s, u/s2. What it cannot follow (a limit, a step) ends the group's motion of this axis with that error; it comes to rest by itself.
+    /// member_left: it has ended before.
+    ErrorId lead(const SetpointFeed& next) noexcept;
+    /// It stands, or comes to rest by itself.
+    void leave_group() noexcept;
+
 private:
     friend class AxisCore;
 

@@ -57,6 +57,8 @@ struct AxisBody {
         if (owner == Owner::none) owner = who;
         return who == owner;
     }
+    /// Its set-points come from its group: nobody else moves it.
+    [[nodiscard]] bool led() const noexcept { return queue.active().command.kind == CommandKind::group_motion; }
     [[nodiscard]] bool software_limits_hold() const noexcept { return homed && config.modulo == 0; }
     /// u/s, of the operating mode; infinity: none.
     [[nodiscard]] double velocity_cap() const noexcept;

@@ -1,5 +1,7 @@
 // What others ask of the axis: checked and answered in the same call.
 
+#include <cmath>
+
 #include "axes/axis/axis.hpp"
 #include "axes/axis/axis_core.hpp"
 
@@ -48,6 +50,8 @@ Submitted answer(AxisCore& axis, const AxisCommand& command, Owner owner) noexce
     if (slot == probe) return axis.probes.submit(command);  // moves nothing: any party may
     if (!axis.body.may(owner)) return {0, ErrorId::owned_by_other};
     if (slot == torque_limit) return axis.bounds.submit(command);
+    if (axis.body.led()) return {0, ErrorId::axis_grouped};
+    if (command.kind == CommandKind::group_motion) return {0, ErrorId::not_supported};
     // A set-point for each cycle does not get through a slow line.
     if (axis.body.slow_line && needs_each_cycle(command.kind)) return {0, ErrorId::not_supported};
     if (slot == phasing) return axis.coupling.phasing.submit(command, owner);
@@ -55,6 +59,11 @@ Submitted answer(AxisCore& axis, const AxisCommand& command, Owner owner) noexce
     if (beside(command)) return axis.homing.passive.submit(command);
     if (slot == superimposed) return take_superimposed(axis, command, owner);
     return take(axis, command, owner);
+}
+
+/// What a group gives keeps the axis' jerk: a stop takes its acceleration over.
+AxisCommand group_command(const AxisLimits& limits, const void* instance) noexcept {
+    return {.kind = CommandKind::group_motion, .jerk = std::isfinite(limits.jerk) ? limits.jerk : 0, .instance = instance};
 }
 
 void show_all(AxisCore& axis) noexcept {
@@ -110,6 +119,48 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (core_->settings.changed()) core_->writer.publish();
     else show_owner(*core_);
     return error;
+}
+
+ErrorId Axis::refuses_group(Owner owner) noexcept {
+    auto& axis = *core_;
+    auto& body = axis.body;
+    if (!connected(body.presence)) return ErrorId::not_connected;
+    if (!body.may(owner)) return ErrorId::owned_by_other;
+    if (body.slow_line) return ErrorId::not_supported;
+    if (body.led()) return ErrorId::axis_grouped;
+    if (const auto error = axis.admission.refuse(group_command(body.config.limits, nullptr)); error != ErrorId::none) return error;
+    const bool free = body.state == AxisState::Standstill && !body.queue.has_active() && body.queue.waiting() == 0 && !axis.conduct.moves() &&
+                      axis.homing.passive.id() == 0;
+    return free ? ErrorId::none : ErrorId::member_moves;
+}
+
+Submitted Axis::join_group(const void* instance, Owner owner) noexcept {
+    if (const auto error = refuses_group(owner); error != ErrorId::none) return {0, error};
+    auto& axis = *core_;
+    axis.plain.disturb();
+    axis.motion.given.begin_feed();
+    const auto given = take(axis, group_command(axis.body.config.limits, instance), owner);
+    show_all(axis);
+    return given;
+}
+
+ErrorId Axis::lead(const SetpointFeed& next) noexcept {
+    auto& axis = *core_;
+    if (!axis.body.led()) return ErrorId::member_left;
+    axis.plain.disturb();
+    const auto error = axis.motion.given.feed(next);
+    if (error == ErrorId::none) return error;
+    axis.conduct.end_with(error);
+    axis.writer.publish();
+    return error;
+}
+
+void Axis::leave_group() noexcept {
+    auto& axis = *core_;
+    if (!axis.body.led()) return;
+    axis.plain.disturb();
+    axis.conduct.halt_on_own_account();
+    axis.writer.publish();
 }
 
 ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {

@@ -55,6 +55,7 @@ ErrorId AxisSettings::apply(const AxisSetting& setting, Owner owner) noexcept {
     if (!body_.may(owner)) return ErrorId::owned_by_other;
     const bool each_cycle = std::holds_alternative<SetpointFeed>(setting) || std::holds_alternative<SelectCam>(setting);
     if (each_cycle && body_.slow_line) return ErrorId::not_supported;
+    if (std::holds_alternative<SetPosition>(setting) && body_.led()) return ErrorId::axis_grouped;
     if (const auto* position = std::get_if<SetPosition>(&setting)) return set_position(*position);
     if (const auto* parameter = std::get_if<WriteParameter>(&setting)) return parameters_.write(*parameter);
     if (const auto* output = std::get_if<WriteOutput>(&setting)) return parameters_.write_output(*output);

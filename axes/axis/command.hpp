@@ -57,6 +57,8 @@ enum class CommandKind : std::uint8_t {
     drive_torque,         ///< TorqueDetails; velocity = the drive's speed limit, 0 = the axis' limit
     // beside whatever the axis does, in any state
     set_torque_limit,  ///< TorqueLimitDetails
+    // only by Axis::join_group
+    group_motion,  ///< set-points of the axis' group, in each cycle; everybody else's motion is refused; jerk = what they keep, 0 = nobody says
 };
 
 /// Units: u, u/s, u/s2, u/s3. Acceleration, deceleration, jerk 0 = the axis' default.

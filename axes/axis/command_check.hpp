@@ -91,6 +91,7 @@ namespace taktwerk::axes {
             if (const auto error = check_step(command); error != ErrorId::none) return error;
             break;
         case CommandKind::external:
+        case CommandKind::group_motion:
         case CommandKind::halt:
         case CommandKind::gear_in:
         case CommandKind::gear_in_pos:

@@ -81,13 +81,14 @@ inline constexpr std::array rows{
     Row{drive_move_velocity,      "Drive_MoveVelocity",         continuous,   buffered | hands_over, Slot::queue, DriveMode::profile_velocity},
     Row{drive_torque,             "Drive_Torque",               continuous,   buffered | hands_over, Slot::queue, DriveMode::profile_torque},
     Row{set_torque_limit,         "MC_SetTorqueLimit",          discrete,     0, Slot::torque_limit},
+    Row{group_motion,             "its axis group",             synchronized, each_cycle},
 };
 // clang-format on
 
 consteval bool sound() {
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (static_cast<std::size_t>(rows[i].kind) != i) return false;
-    return rows.size() == static_cast<std::size_t>(set_torque_limit) + 1;
+    return rows.size() == static_cast<std::size_t>(group_motion) + 1;
 }
 static_assert(sound(), "each kind has its row, in the order of CommandKind");
 
@@ -109,6 +110,9 @@ static_assert(sound(), "each kind has its row, in the order of CommandKind");
 [[nodiscard]] constexpr bool needs_each_cycle(CommandKind kind) noexcept { return kind_table::has(kind, kind_table::each_cycle); }
 [[nodiscard]] constexpr bool can_be_updated(CommandKind kind) noexcept { return kind_table::has(kind, kind_table::updated); }
 [[nodiscard]] constexpr bool follows_table(CommandKind kind) noexcept { return kind_table::has(kind, kind_table::over_time); }
+
+/// Its set-points are given from outside, in each cycle: by a program, or by a group.
+[[nodiscard]] constexpr bool is_fed(CommandKind kind) noexcept { return kind == CommandKind::external || kind == CommandKind::group_motion; }
 
 /// Kinds of a slave: SynchronizedMotion.
 [[nodiscard]] constexpr bool couples(CommandKind kind) noexcept { return kind_table::has(kind, kind_table::couples); }

@@ -63,7 +63,7 @@ ErrorId GivenMotion::make_curve(const AxisCommand& command, Addition addition, d
 
 ErrorId GivenMotion::refuse(const AxisCommand& command, bool starts_now) noexcept {
     // Nothing says when an axis that is fed would have finished.
-    if (!starts_now && body_.queue.active().command.kind == CommandKind::external) return ErrorId::buffer_mode_not_supported;
+    if (!starts_now && is_fed(body_.queue.active().command.kind)) return ErrorId::buffer_mode_not_supported;
     if (!follows_table(command.kind)) return ErrorId::none;
     if (starts_now) return make_curve(command, Addition::folded);
     const auto& details = std::get<TimeProfileDetails>(command.details);
@@ -75,7 +75,7 @@ ErrorId GivenMotion::take(const AxisCommand& command) noexcept {
         if (const auto error = make_curve(command, Addition::stays); error != ErrorId::none) return error;
         profile_.take_spare();
         profile_.behind = 0;
-    } else {
+    } else if (command.kind != CommandKind::group_motion) {  // a group has given the first one already
         feed_ = {};
     }
     return ErrorId::none;
@@ -139,7 +139,7 @@ double GivenMotion::base_speed(double sense) const noexcept {
 
 double GivenMotion::jerk() const noexcept {
     const auto& command = body_.queue.active().command;
-    return command.kind == CommandKind::external ? std::min(command.jerk, body_.config.limits.jerk) : 0;  // P1-037
+    return is_fed(command.kind) ? std::min(command.jerk, body_.config.limits.jerk) : 0;  // P1-037
 }
 
 ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
@@ -175,7 +175,6 @@ ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
 }
 
 ErrorId GivenMotion::feed(const SetpointFeed& fed) noexcept {
-    if (body_.queue.active().command.kind != CommandKind::external) return ErrorId::state_forbids;
     ErrorId error = ErrorId::none;
     const MotionState next{body_.units.to_local(fed.position), fed.velocity, fed.acceleration};
     if (!std::isfinite(fed.position)) error = ErrorId::invalid_position;

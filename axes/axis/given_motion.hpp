@@ -25,7 +25,10 @@ public:
     [[nodiscard]] bool step(Duration period) noexcept;
     /// Largest velocity that the base is going to have in the sense 1 or -1, u/s, as far as anybody knows.
     [[nodiscard]] double base_speed(double sense) const noexcept;
+    /// The next set-point, for a command that is fed.
     ErrorId feed(const SetpointFeed& fed) noexcept;
+    /// A group begins to give set-points.
+    void begin_feed() noexcept { feed_ = {}; }
 
     /// Room for tables. Not real-time.
     void reserve(std::size_t rows) {

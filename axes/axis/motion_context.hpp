@@ -35,11 +35,14 @@ protected:
     ~AxisRequests() = default;
 };
 
+class GroupAccess;  // axes/group/group_access.hpp
+
 struct MotionContext : CycleContext {
     std::span<const AxisView> axes;
     AxisRequests* requests = nullptr;
     Owner owner = Owner::program;
     ObjectAccess* objects = nullptr;  ///< of the bus' devices; nullptr where there is no bus
+    GroupAccess* groups = nullptr;    ///< of axes that move together; nullptr where there are none, and in slower tasks
     MotionTables* tables = nullptr;   ///< cams, profiles over time, cam switches; nullptr where nobody declared any
     // One value per declared point of the whole machine, indexed by the handles.
     std::span<const std::int64_t> inputs;

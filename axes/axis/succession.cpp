@@ -72,6 +72,7 @@ ErrorId Succession::set_goal(const AcceptedCommand& accepted) noexcept {
         case CommandKind::velocity_profile:
         case CommandKind::acceleration_profile:
         case CommandKind::external:
+        case CommandKind::group_motion:
             aim_.start_at_base();
             if (const auto error = given_.take(command); error != ErrorId::none) return error;
             aim_.at(Goal::Kind::given, 0, full_limits(body_.config.limits), VelocityLimiter::command);

@@ -13,6 +13,13 @@ struct AxisRef {
     friend constexpr bool operator==(AxisRef, AxisRef) = default;
 };
 
+/// A program's handle on a group of axes that move together (axes/group/), likewise.
+struct GroupRef {
+    std::uint16_t index = 0xFFFF;
+    [[nodiscard]] constexpr bool valid() const noexcept { return index != 0xFFFF; }
+    friend constexpr bool operator==(GroupRef, GroupRef) = default;
+};
+
 /// PLCopen Part 1 v2.0, figure 2.
 enum class AxisState : std::uint8_t {
     Disabled,
@@ -133,7 +140,19 @@ enum class ErrorId : std::uint16_t {
     brake_closed = 0x0038,          ///< MC_SetBrake has closed it under power
     // Groups that join and leave.
     not_connected = 0x0039,  ///< the group of its drive is away; see AxisView::presence
+    // Groups of axes (PLCopen Part 4).
+    axis_grouped = 0x003A,         ///< a group moves this axis; the group goes on
+    invalid_group = 0x003B,        ///< no such group
+    group_disabled = 0x003C,       ///< MC_GroupEnable first
+    no_members = 0x003D,           ///< a group without axes
+    invalid_member = 0x003E,       ///< IdentInGroup outside 1..16, taken or unknown; an axis of this or another group already
+    member_moves = 0x003F,         ///< a member moves by itself, or has commands
+    member_left = 0x0040,          ///< somebody took a member out of the group's motion
+    no_kinematics = 0x0041,        ///< a frame other than ACS, and the group has no kinematics for it
+    unknown_command = 0x0042,      ///< no command of this group that waits or runs has this CommandID
+    nothing_interrupted = 0x0043,  ///< MC_GroupContinue, and no MC_GroupInterrupt before it
+    not_at_interruption = 0x0044,  ///< a member is not where the path was interrupted
 };
-inline constexpr std::size_t error_id_count = 0x003A;
+inline constexpr std::size_t error_id_count = 0x0045;
 
 }  // namespace taktwerk::axes
