@@ -32,6 +32,8 @@ enum class MachineAlarm : AlarmId {
     output_no_number = 0x6018,
     group_pulled = 0x6019,
     points_forced = 0x601A,
+    task_watchdog = 0x601B,
+    task_late = 0x601C,
 };
 /// First number of input_faulty: what its terminal says.
 inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2, input_no_number = 3;
@@ -40,7 +42,7 @@ inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 23> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 25> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -234,6 +236,20 @@ inline constexpr std::array<AlarmInfo, 23> machine_alarms{{
      ResetRule::self_clearing,
      Reaction::warn,
      {}},
+    {id(MachineAlarm::task_watchdog), "task_watchdog",
+     "The task has not ended within its watchdog time ({a} ms since its release, allowed {b} ms): its program was stopped",
+     "任务未在看门狗时间内结束(自释放起 {a} 毫秒,允许 {b} 毫秒):其程序已被停止",
+     "An endless loop, a wait or a long computation in this task, or other work kept it from the processor",
+     "Mend the task, do its work in pieces, or give it a longer `watchdog`; reset, then start the program. While the task still has not come "
+     "back its program cannot be started: end the run and start it again",
+     ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops it"},
+    {id(MachineAlarm::task_late), "task_late",
+     "A task was not finished at its next release, {a} times in a row (allowed {b}): its program was stopped",
+     "任务在下次释放时尚未完成,连续 {a} 次(允许 {b} 次):其程序已被停止",
+     "The task computes too long for its period, or other work keeps it from the processor",
+     "Shorten the task, raise `every`, or allow more (`overruns_allowed`, `overrun: count`); reset, then start the program. While the task "
+     "still has not come back its program cannot be started: end the run and start it again",
+     ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops it"},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

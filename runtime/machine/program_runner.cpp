@@ -76,7 +76,7 @@ void ProgramRunner::build_tasks() {
             {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
                                         body_.tables, values_.count_of(i), std::move(kept)),
-             i, 0, true, std::move(shows), std::move(keeps)});
+             i, TaskWatch{task.config, body_.config.cycle}, true, {}, std::move(shows), std::move(keeps)});
     }
 }
 
@@ -144,6 +144,7 @@ void ProgramRunner::take_answers() noexcept {
         auto& slow = slow_tasks_[i];
         if (slow.finished || !slow.task->finished()) continue;
         slow.finished = true;
+        slow.watch.end(body_.cycles);
         if (recorder != nullptr) record_slow(*recorder, body_.now, static_cast<std::uint16_t>(i));
     }
     objects_.take_answers(body_.recorder, body_.now);
@@ -203,7 +204,7 @@ void ProgramRunner::stop_all() noexcept {
 }
 
 void ProgramRunner::reset() noexcept {
-    for (auto& slow : slow_tasks_) slow.overruns = 0;
+    for (auto& slow : slow_tasks_) slow.watch.forgive();
     for (auto& program : programs_)
         if (program.state == ProgramState::fault) program.state = ProgramState::stopped;
 }
@@ -243,9 +244,13 @@ void ProgramRunner::take_handshakes() noexcept {
             program.state = ProgramState::running;
             program.fault = {};
             program.undeclared = {};
-            objects_.release_all(p);
-            for (auto& slow : slow_tasks_)
-                if (slow.task->program() == p) slow.task->restart();
+            program.stopped_by.clear();
+            objects_.open(p);
+            for (auto& slow : slow_tasks_) {
+                if (slow.task->program() != p) continue;
+                slow.task->restart();
+                slow.watch.forgive();
+            }
             for (auto& base : base_tasks_)
                 if (host_.tasks()[base.place].program == p) base.scans = 0;
         }
@@ -323,6 +328,12 @@ std::string ProgramRunner::at_work() const {
 }
 
 std::string ProgramRunner::fault(std::size_t program) const {
+    if (const auto task = programs_[program].stopped_by.task()) {
+        const auto& config = host_.tasks()[*task].config;
+        return programs_[program].stopped_by.verdict() == TaskVerdict::watchdog
+                   ? fmt::format("task '{}' did not end within its watchdog time", config.name)
+                   : fmt::format("task '{}' missed more than {} releases in a row", config.name, config.overruns_allowed);
+    }
     const std::lock_guard lock{fault_words_};
     return host_.programs()[program].fault;
 }

@@ -17,6 +17,7 @@
 #include "runtime/tasks/program_host.hpp"
 #include "runtime/tasks/program_record.hpp"
 #include "runtime/tasks/slow_task.hpp"
+#include "runtime/tasks/task_watch.hpp"
 
 namespace taktwerk::runtime {
 
@@ -102,8 +103,9 @@ private:
     struct SlowPlace {
         std::unique_ptr<SlowTask> task;
         std::size_t place = 0;
-        std::uint16_t overruns = 0;      // in a row
+        TaskWatch watch;
         bool finished = true;            // as the cycle knows it
+        double taken = 0;                // of what its alarm tells: overruns in a row, or milliseconds
         std::vector<std::size_t> shows;  // the variables that are read after its runs
         std::vector<std::size_t> keeps;  // what is kept of its memory: places in host_.retained()
     };
@@ -126,6 +128,10 @@ private:
     // program_tasks.cpp
     void run_base_task(BaseTask& base) noexcept;
     void release_slow_task(SlowPlace& slow) noexcept;
+    /// Its program stops when it does not keep its time.
+    void judge(SlowPlace& slow) noexcept;
+    [[nodiscard]] double milliseconds(std::uint64_t cycles) const noexcept;
+    void raise_alarms_of_task(const SlowPlace& slow) noexcept;
     void write_values_at_rest() noexcept;
     void raise_alarms_of(std::size_t program) noexcept;
     /// A run of a task is over.

@@ -70,13 +70,13 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     body_.requests.speak_for(static_cast<std::uint16_t>(p), body_.now);
     if (runs) task.renew(program.requests);
     if (!task.due(body_.cycles)) return;
-    auto& numbers = task_statistics_[slow.place];
     if (!slow.finished) {
-        ++numbers.overruns;
-        if (slow.overruns < 0xFFFF) ++slow.overruns;
+        if (!runs) return;  // there is no release to miss
+        ++task_statistics_[slow.place].overruns;
+        slow.watch.missed();
         return;
     }
-    slow.overruns = 0;
+    slow.watch.in_time();
     if (!runs) {
         task.forget();
         return;
@@ -96,7 +96,22 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     context.now = body_.now;
     context.period = body_.config.cycle;
     slow.finished = false;
+    slow.watch.begin(body_.cycles);
     task.release(context, body_.views, {io.inputs(), io.input_values()}, io.outputs(), host_.parameters(), alarms);
+}
+
+// Its image is its own: what it still does reaches nobody. The axes that its program powers or moves stop along their ramps, the outputs that no
+// other program drives become safe, everything else goes on.
+void ProgramRunner::judge(SlowPlace& slow) noexcept {
+    const auto p = slow.task->program();
+    auto& program = programs_[p];
+    if (!program.running()) return;
+    const auto verdict = slow.watch.verdict(body_.cycles);
+    if (verdict == TaskVerdict::in_time) return;
+    program.stopped_by.set(slow.place, verdict);
+    slow.taken = verdict == TaskVerdict::late ? slow.watch.overruns() : milliseconds(slow.watch.cycles_taken(body_.cycles));
+    objects_.close(p);
+    stop(p, ProgramState::fault);
 }
 
 // Only while neither a task nor start() nor stop() of the program is at work: they have its variables then.
@@ -115,7 +130,10 @@ void ProgramRunner::run_tasks() noexcept {
     if (body_.emergency) values_.let_go_all();
     values_.end_leases(body_.now);
     write_values_at_rest();
-    for (auto& slow : slow_tasks_) release_slow_task(slow);
+    for (auto& slow : slow_tasks_) {
+        release_slow_task(slow);
+        judge(slow);
+    }
     longest_base_task_ = {};
     for (auto& base : base_tasks_) {
         if (!programs_[host_.tasks()[base.place].program].running()) continue;
@@ -133,7 +151,7 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
     const auto index = static_cast<std::uint16_t>(p);
     const auto& program = host_.programs()[p];
     const auto& record = programs_[p];
-    if (record.state == ProgramState::fault) body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
+    if (record.state == ProgramState::fault && !record.stopped_by.task()) body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
     auto undeclared = record.undeclared;
     for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
         const auto& text = program.alarm_texts[n];
@@ -152,13 +170,27 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
                     undeclared.what == Undeclared::What::alarm ? 1 : 0);
 }
 
+double ProgramRunner::milliseconds(std::uint64_t cycles) const noexcept {
+    return static_cast<double>(cycles) * to_seconds(body_.config.cycle) * 1e3;
+}
+
+void ProgramRunner::raise_alarms_of_task(const SlowPlace& slow) noexcept {
+    const auto& task = slow.task->config();
+    const auto place = static_cast<std::uint16_t>(slow.place);
+    const auto& program = programs_[slow.task->program()];
+    const auto overruns = slow.watch.overruns();
+    if (task.overrun == OverrunReaction::stop_machine && overruns > task.overruns_allowed && program.running())
+        body_.raise(MachineAlarm::task_overrun, AlarmSource::task, place, overruns, task.overruns_allowed);
+    // Also behind a reset, for as long as its thread has not come back: its program cannot be started, and this says why.
+    if (program.stopped_by.task() != slow.place || (program.state != ProgramState::fault && slow.finished)) return;
+    if (program.stopped_by.verdict() == TaskVerdict::late)
+        body_.raise(MachineAlarm::task_late, AlarmSource::task, place, slow.taken, task.overruns_allowed);
+    else
+        body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
+}
+
 void ProgramRunner::raise_alarms() noexcept {
-    for (const auto& slow : slow_tasks_) {
-        const auto& task = slow.task->config();
-        if (task.overrun == OverrunReaction::stop_machine && slow.overruns > task.overruns_allowed)
-            body_.raise(MachineAlarm::task_overrun, AlarmSource::task, static_cast<std::uint16_t>(slow.place), slow.overruns,
-                        task.overruns_allowed);
-    }
+    for (const auto& slow : slow_tasks_) raise_alarms_of_task(slow);
     for (std::size_t p = 0; p < programs_.size(); ++p) raise_alarms_of(p);
 }
 
