@@ -134,8 +134,8 @@ void Machine::Impl::wait_for_bus(const CycleTick& tick) noexcept {
 void Machine::Impl::compute(const CycleTick& tick) noexcept {
     const auto now = body.now;
     programs.take_answers();
+    body.requests.speak_for(no_program, now);  // a stop is a person's, not the last program's
     desk.take_levels(now);
-    body.requests.speak_for(no_program, now);
     desk.drain_inbox(now);
     done(Step::inbox);
 
