@@ -40,12 +40,12 @@ Stand stand(const Chain& chain, const Frame<double>& flange, const Joints& joint
 
 }  // namespace
 
-Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& seed, double reach) noexcept {
+Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& seed, double reach, int steps) noexcept {
     Refined best{seed, 0, 0};
     Stand now = stand(chain, flange, seed, reach);
     best.left = now.left;
     double damping = 0;
-    while (best.left > aim && best.steps < max_refine_steps) {
+    while (best.left > aim && best.steps < steps) {
         ++best.steps;
         Jacobian j = Chain::jacobian(now.frames);
         j.topRows<3>() /= reach;

@@ -9,7 +9,6 @@
 namespace taktwerk::axes {
 namespace {
 
-
 void expect_axes(const Joints& axes, const Joints& expected, double tolerance = 1e-9) {
     for (std::size_t i = 0; i < max_joints; ++i) EXPECT_NEAR(axes[i], expected[i], tolerance) << "axis " << i + 1;
 }
