@@ -17,6 +17,7 @@ AxisMap::AxisMap(const std::array<JointSettings, max_joints>& joints, const Coup
         to_axes_.row(i) /= unit;
         to_joints_.col(i) *= unit;
     }
+    plain_ = sound_ && to_axes_.isIdentity(0);
 }
 
 Joints AxisMap::arm_of(const Joints& joints) const noexcept {

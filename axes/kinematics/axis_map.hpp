@@ -38,8 +38,8 @@ public:
     AxisMap(const std::array<JointSettings, max_joints>& joints, const Coupling& coupling) noexcept;
 
     [[nodiscard]] bool sound() const noexcept { return sound_; }
-    [[nodiscard]] Joints joints_of(const Joints& axes) const noexcept { return times(to_joints_, axes); }
-    [[nodiscard]] Joints axes_of(const Joints& joints) const noexcept { return times(to_axes_, joints); }
+    [[nodiscard]] Joints joints_of(const Joints& axes) const noexcept { return plain_ ? axes : times(to_joints_, axes); }
+    [[nodiscard]] Joints axes_of(const Joints& joints) const noexcept { return plain_ ? joints : times(to_axes_, joints); }
     /// Velocities of joints for those of axes, and back.
     [[nodiscard]] const JointMatrix& to_joints() const noexcept { return to_joints_; }
     [[nodiscard]] const JointMatrix& to_axes() const noexcept { return to_axes_; }
@@ -55,6 +55,7 @@ private:
     JointMatrix to_axes_;
     JointMatrix to_joints_;
     bool sound_ = true;
+    bool plain_ = false;  ///< each axis is a joint, in its unit
 };
 
 }  // namespace taktwerk::axes

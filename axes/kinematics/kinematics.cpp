@@ -24,13 +24,19 @@ bool finite(const Joints& joints) noexcept {
     return std::all_of(joints.begin(), joints.end(), [](double v) { return std::isfinite(v); });
 }
 
+constexpr double whole_turn = 2 * std::numbers::pi;
+
 /// The turn that an angle is in; beyond what a number of turns holds, the last one.
 std::int8_t turn_of(double angle) noexcept {
-    constexpr double pi = std::numbers::pi;
-    return static_cast<std::int8_t>(std::clamp(std::ceil((angle - pi) / (2 * pi)), -127.0, 127.0));
+    double whole = std::clamp(nearest_whole(angle / whole_turn), -127.0, 127.0);
+    // A half belongs to the turn before.
+    if (angle - whole_turn * whole > whole_turn / 2) ++whole;
+    if (angle - whole_turn * whole <= -whole_turn / 2) --whole;
+    return static_cast<std::int8_t>(std::clamp(whole, -127.0, 127.0));
 }
 
 Miss outside(const JointSettings& s, std::size_t joint, double value) noexcept {
+    if (value >= s.low && value <= s.high) return {};
     // A limit that is itself the result of some arithmetic does not fail by its last bits.
     const double beyond = std::max(s.low - value, value - s.high);
     return beyond > 1e-12 * (1 + std::abs(value)) ? Miss{KinematicFault::joint_limit, static_cast<int>(joint), beyond} : Miss{};
@@ -38,15 +44,15 @@ Miss outside(const JointSettings& s, std::size_t joint, double value) noexcept {
 
 /// The whole turns away from `angle` that are nearest to `near` and within the limits, where there are some.
 double turned_near(double angle, double near, const JointSettings& s) noexcept {
-    constexpr double turn = 2 * std::numbers::pi;
-    const double best = angle + turn * std::round((near - angle) / turn);
+    const double best = angle + whole_turn * nearest_whole((near - angle) / whole_turn);
+    if (best >= s.low && best <= s.high) return best;
     const double slack = 1e-12 * (1 + std::abs(best));
     if (best > s.high + slack) {
-        const double below = best - turn * std::ceil((best - s.high - slack) / turn);
+        const double below = best - whole_turn * std::ceil((best - s.high - slack) / whole_turn);
         return below >= s.low - slack ? below : best;
     }
     if (best < s.low - slack) {
-        const double above = best + turn * std::ceil((s.low - slack - best) / turn);
+        const double above = best + whole_turn * std::ceil((s.low - slack - best) / whole_turn);
         return above <= s.high + slack ? above : best;
     }
     return best;
@@ -54,12 +60,6 @@ double turned_near(double angle, double near, const JointSettings& s) noexcept {
 
 }  // namespace
 
-std::size_t Kinematics::joint_count() const noexcept {
-    return std::visit([](const auto& arm) { return arm.joint_count(); }, arm_);
-}
-std::array<bool, max_joints> Kinematics::rotary() const noexcept {
-    return std::visit([](const auto& arm) { return arm.rotary(); }, arm_);
-}
 std::array<bool, 6> Kinematics::commands() const noexcept {
     return std::visit([](const auto& arm) { return arm.commands(); }, arm_);
 }
@@ -91,19 +91,17 @@ Miss Kinematics::to_flange(const Pose& tool_point, const Pose& tool, Frame<doubl
 AxisSolution Kinematics::placed(const ArmSolution& way, const Configuration& wanted, const Joints& near_joints) const noexcept {
     AxisSolution s;
     s.configuration.branch = way.branch;
-    const auto turning = rotary();
     Joints joints = map_.joints_of_arm(way.joints);
     for (std::size_t i = 0; i < max_joints; ++i) {
         s.configuration.turns[i] = 0;
-        if (i >= joint_count()) {
+        if (i >= joint_count_) {
             joints[i] = 0;
             continue;
         }
-        if (turning[i]) {
-            constexpr double turn = 2 * std::numbers::pi;
+        if (rotary_[i]) {
             const std::int8_t asked = wanted.turns[i];
             joints[i] = asked == any_turn ? turned_near(joints[i], near_joints[i], map_.settings(i))
-                                          : joints[i] + turn * (static_cast<double>(asked) - turn_of(joints[i]));
+                                          : joints[i] + whole_turn * (static_cast<double>(asked) - turn_of(joints[i]));
             s.configuration.turns[i] = turn_of(joints[i]);
         }
         const Miss miss = outside(map_.settings(i), i, joints[i]);
@@ -114,10 +112,9 @@ AxisSolution Kinematics::placed(const ArmSolution& way, const Configuration& wan
 }
 
 double Kinematics::way_between(const Joints& a, const Joints& b) const noexcept {
-    const auto turning = rotary();
     double sum = 0;
-    for (std::size_t i = 0; i < joint_count(); ++i) {
-        const double way = (a[i] - b[i]) / (turning[i] ? 1 : reach_);
+    for (std::size_t i = 0; i < joint_count_; ++i) {
+        const double way = (a[i] - b[i]) / (rotary_[i] ? 1 : reach_);
         sum += way * way;
     }
     return sum;
@@ -170,8 +167,7 @@ Configuration Kinematics::configuration(const Joints& axes) const noexcept {
     const Joints joints = map_.joints_of(axes), arm = map_.arm_of(joints);
     Configuration c;
     c.branch = std::visit([&](const auto& a) { return a.branch(arm); }, arm_);
-    const auto turning = rotary();
-    for (std::size_t i = 0; i < max_joints; ++i) c.turns[i] = i < joint_count() && turning[i] ? turn_of(joints[i]) : std::int8_t{0};
+    for (std::size_t i = 0; i < max_joints; ++i) c.turns[i] = i < joint_count_ && rotary_[i] ? turn_of(joints[i]) : std::int8_t{0};
     return c;
 }
 
@@ -182,7 +178,7 @@ Singularity Kinematics::singularity(const Joints& axes) const noexcept {
 
 Miss Kinematics::limits_of(const Joints& axes) const noexcept {
     const Joints joints = map_.joints_of(axes);
-    for (std::size_t i = 0; i < joint_count(); ++i)
+    for (std::size_t i = 0; i < joint_count_; ++i)
         if (const Miss miss = outside(map_.settings(i), i, joints[i]); !miss.ok()) return miss;
     return {};
 }

@@ -57,8 +57,8 @@ public:
     /// kinematics.base (an orientation whose length is not 1). Not for the cycle.
     [[nodiscard]] static Result<Kinematics> make(const KinematicsDescription& description);
 
-    [[nodiscard]] std::size_t joint_count() const noexcept;
-    [[nodiscard]] std::array<bool, max_joints> rotary() const noexcept;
+    [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
+    [[nodiscard]] const std::array<bool, max_joints>& rotary() const noexcept { return rotary_; }
     /// Which components of a pose the arm commands, in its own base.
     [[nodiscard]] std::array<bool, 6> commands() const noexcept;
 
@@ -101,6 +101,8 @@ private:
     Frame<double> base_;
     Frame<double> to_base_;
     double reach_ = 1;
+    std::size_t joint_count_ = 0;
+    std::array<bool, max_joints> rotary_{};
 };
 
 }  // namespace taktwerk::axes

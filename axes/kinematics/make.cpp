@@ -153,6 +153,8 @@ Result<Kinematics> Kinematics::make(const KinematicsDescription& description) {
         coupling = with_belt(description.coupling);
     }
 
+    k.joint_count_ = std::visit([](const auto& arm) { return arm.joint_count(); }, k.arm_);
+    k.rotary_ = std::visit([](const auto& arm) { return arm.rotary(); }, k.arm_);
     if (const auto* six = std::get_if<SixArm>(&k.arm_); six != nullptr && !six->sound())
         return Error{
             "kinematics.geometry", std::string(kind), "axes 1 and 2 are parallel, or two joints are one",

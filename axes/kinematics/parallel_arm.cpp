@@ -51,7 +51,7 @@ ArmSolutions ParallelArm::solve(const Frame<double>& flange, const Joints& near)
     ArmSolutions found;
     const Frame<double> wrist = to_model_ * flange * from_flange_;
     const double x = wrist.origin[0], y = wrist.origin[1], z = wrist.origin[2];
-    const double radius = std::hypot(x, y), aside = std::abs(aside_), rounding = edge_rounding * (upper_ + fore_);
+    const double radius = std::sqrt(x * x + y * y), aside = std::abs(aside_), rounding = edge_rounding * (upper_ + fore_);
     if (radius < aside - rounding) {
         found.missed(KinematicFault::out_of_reach, aside - radius);
         return found;
@@ -84,7 +84,7 @@ ArmSolutions ParallelArm::solve(const Frame<double>& flange, const Joints& near)
                 const double second = way.angle(), third = way.between();
                 const Joints angles{first, second, third, w.first - second - third, -w.second, w.third};
                 Joints joints;
-                for (std::size_t i = 0; i < 6; ++i) joints[i] = principal(sign_[i] * (angles[i] - offset_[i]));
+                for (std::size_t i = 0; i < 6; ++i) joints[i] = sign_[i] * (angles[i] - offset_[i]);
                 found.add(joints, {flag<Shoulder>(side), flag<Elbow>(&way == &ways[0] ? 1 : -1), flag<Wrist>(&w == &wrists[1] ? 1 : -1)});
             }
         }

@@ -12,6 +12,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 /// A step turns no joint further than this: beyond it the tangent says nothing.
 constexpr double longest_step = 0.5;
+/// What is aimed at: below it is rounding. A last step from refine_rounding gets there, and keeps noise out of what is differentiated twice.
+constexpr double aim = 3e-15;
 
 struct Stand {
     std::array<Frame<double>, 7> frames;
@@ -38,12 +40,12 @@ Stand stand(const Chain& chain, const Frame<double>& flange, const Joints& joint
 
 }  // namespace
 
-Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& seed, double reach) noexcept {
+Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& seed, double reach, int steps) noexcept {
     Refined best{seed, 0, 0};
     Stand now = stand(chain, flange, seed, reach);
     best.left = now.left;
     double damping = 0;
-    while (best.left > refine_rounding && best.steps < max_refine_steps) {
+    while (best.left > aim && best.steps < steps) {
         ++best.steps;
         Jacobian j = Chain::jacobian(now.frames);
         j.topRows<3>() /= reach;
@@ -67,6 +69,8 @@ Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& se
             best.joints = next;
             best.left = then.left;
             now = then;
+        } else if (best.left <= refine_rounding) {
+            break;
         } else {
             damping = damping == 0 ? std::max(1e-18, best.left * best.left) : 10 * damping;
         }

@@ -80,8 +80,10 @@ ArmSolutions SixArm::solve_one(const Frame<double>& flange, const Branch& wanted
     std::sort(begin, end, [&](const ArmSolution& a, const ArmSolution& b) { return rank(a) < rank(b); });
     ArmSolutions found;
     found.miss = seeds.miss;
+    int steps = max_refine_steps_in_all;
     const auto add = [&](const Joints& seed) {
-        const Refined r = refine(chain_, flange, seed, reach_);
+        const Refined r = refine(chain_, flange, seed, reach_, std::min(steps, max_refine_steps));
+        steps -= r.steps;
         if (!r.ok()) return found.missed(KinematicFault::no_convergence, r.left), false;
         const Joints joints = principal_of(r.joints);
         found.add(joints, branch(joints));
@@ -90,7 +92,7 @@ ArmSolutions SixArm::solve_one(const Frame<double>& flange, const Branch& wanted
     // The joints that it comes from first, as long as the neighbour's nearest way is not far from them: then they are the better seed.
     const bool close = seeds.count == 0 || distance(seeds.at[0].joints, near) < 0.2;
     if (close && answers(branch(near), wanted) && add(near)) return found;
-    for (int i = 0; i < seeds.count && i < 7; ++i)
+    for (int i = 0; i < seeds.count && found.count < 8 && steps > 0; ++i)
         if (add(seeds.at[static_cast<std::size_t>(i)].joints)) break;
     return found;
 }

@@ -12,15 +12,15 @@ namespace taktwerk::axes {
 /// may carry is the drive's feed-forward's matter.
 struct RigidBody {
     double mass = 0;
-    Pose centre;                      ///< centre of gravity, and the directions of the principal axes
+    Pose centre{};                    ///< centre of gravity, and the directions of the principal axes
     std::array<double, 3> inertia{};  ///< about the principal axes through the centre
 
     friend bool operator==(const RigidBody&, const RigidBody&) = default;
 };
 
 struct Tool {
-    Pose frame;  ///< the tool's point and directions, seen from the flange
-    RigidBody body;
+    Pose frame{};  ///< the tool's point and directions, seen from the flange
+    RigidBody body{};
 
     friend bool operator==(const Tool&, const Tool&) = default;
 };

@@ -25,8 +25,8 @@ struct TwoLinks {
 /// Both ways, the one with between >= 0 first. Where the links fold onto their root, `fallback_angle` becomes a. Lengths > 0.
 /// False: out of reach by `lacking` (unit of length).
 [[nodiscard]] inline bool links_reach(double first, double second, double x, double y, double fallback_angle, TwoLinks (&ways)[2],
-                                double& lacking) noexcept {
-    const double distance = std::hypot(x, y);
+                                      double& lacking) noexcept {
+    const double distance = std::sqrt(x * x + y * y);
     const double longest = first + second, shortest = std::abs(first - second);
     lacking = std::max(distance - longest, shortest - distance);
     if (!(lacking <= edge_rounding * longest)) return false;

@@ -2,6 +2,7 @@
 // The three angles of a spherical wrist: Rz(first) Ry(second) Rz(third). Pure, real-time safe.
 
 #include <cmath>
+#include <numbers>
 
 #include "axes/kinematics/frame.hpp"
 
@@ -15,26 +16,19 @@ struct WristAngles {
     double first = 0, second = 0, third = 0;
 };
 
-/// Both ways, second >= 0 first. The third angle is taken from what the first two leave, so that all three together are right to rounding
-/// although the outer ones, near the singularity, are not.
+/// Both ways, second >= 0 first; angles within two turns. The third angle is taken from what the first two leave, so that all three together
+/// are right to rounding although the outer ones, near the singularity, are not.
 inline void wrist_angles(const Frame<double>& turn, double held_first, WristAngles (&ways)[2]) noexcept {
-    const double x = turn.axis[2][0], y = turn.axis[2][1], sine = std::hypot(x, y);
-    for (int way = 0; way < 2; ++way) {
-        WristAngles& w = ways[way];
-        double c = 1, s = 0;
-        if (sine < wrist_held_below) {
-            w.first = held_first;
-            c = std::cos(held_first);
-            s = std::sin(held_first);
-        } else {
-            c = way == 0 ? x / sine : -x / sine;
-            s = way == 0 ? y / sine : -y / sine;
-            w.first = std::atan2(s, c);
-        }
-        const double middle = c * x + s * y;
-        w.second = std::atan2(sine < wrist_held_below && way == 1 ? -std::abs(middle) : middle, turn.axis[2][2]);
-        w.third = std::atan2(c * turn.axis[0][1] - s * turn.axis[0][0], c * turn.axis[1][1] - s * turn.axis[1][0]);
-    }
+    constexpr double pi = std::numbers::pi;
+    const double x = turn.axis[2][0], y = turn.axis[2][1], sine = std::sqrt(x * x + y * y);
+    const bool held = sine < wrist_held_below;
+    const double c = held ? std::cos(held_first) : x / sine, s = held ? std::sin(held_first) : y / sine;
+    WristAngles& w = ways[0];
+    w.first = held ? held_first : std::atan2(s, c);
+    w.second = std::atan2(held ? std::abs(c * x + s * y) : sine, turn.axis[2][2]);
+    w.third = std::atan2(c * turn.axis[0][1] - s * turn.axis[0][0], c * turn.axis[1][1] - s * turn.axis[1][0]);
+    // The other way: the outer two half a turn on. Held, the first one stays.
+    ways[1] = held ? WristAngles{w.first, -w.second, w.third} : WristAngles{w.first + pi, -w.second, w.third + pi};
 }
 
 }  // namespace taktwerk::axes

@@ -32,6 +32,8 @@ WristArm::WristArm(const Chain& chain) noexcept {
     aside_ = (centre - point(1)).dot(left);
     const double fore_angle = angle(along);
     bend_ = angle(fore) - fore_angle;
+    bend_sine_ = std::sin(bend_);
+    bend_cosine_ = std::cos(bend_);
     offset_[1] = angle(upper);
     offset_[2] = fore_angle - offset_[1];
 
@@ -50,7 +52,7 @@ ArmSolutions WristArm::solve(const Frame<double>& flange, const Joints& near) co
     ArmSolutions found;
     const Frame<double> wrist = to_model_ * flange * from_flange_;
     const double x = wrist.origin[0], y = wrist.origin[1], z = wrist.origin[2];
-    const double radius = std::hypot(x, y), aside = std::abs(aside_), rounding = edge_rounding * (upper_ + fore_);
+    const double radius = std::sqrt(x * x + y * y), aside = std::abs(aside_), rounding = edge_rounding * (upper_ + fore_);
     if (radius < aside - rounding) {
         found.missed(KinematicFault::out_of_reach, aside - radius);
         return found;
@@ -73,8 +75,8 @@ ArmSolutions WristArm::solve(const Frame<double>& flange, const Joints& near) co
             const double second = way.angle(), third = bent - bend_;
             // The forearm's own angle: that of the line to the wrist's centre, less the bend.
             const TwoLinks line = way.with_end_turned();
-            const double cb = std::cos(bend_), sb = std::sin(bend_);
-            const double s23 = line.sine * cb - line.cosine * sb, c23 = line.cosine * cb + line.sine * sb;
+            const double s23 = line.sine * bend_cosine_ - line.cosine * bend_sine_,
+                         c23 = line.cosine * bend_cosine_ + line.sine * bend_sine_;
             // (Rz(first) Ry(second + third))^T, from the left
             Frame<double> turn;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -87,7 +89,7 @@ ArmSolutions WristArm::solve(const Frame<double>& flange, const Joints& near) co
             for (const WristAngles& w : wrists) {
                 const Joints angles{first, second, third, w.first, w.second, w.third};
                 Joints joints;
-                for (std::size_t i = 0; i < 6; ++i) joints[i] = principal(sign_[i] * (angles[i] - offset_[i]));
+                for (std::size_t i = 0; i < 6; ++i) joints[i] = sign_[i] * (angles[i] - offset_[i]);
                 found.add(joints, {flag<Shoulder>(side), flag<Elbow>(&way == &ways[0] ? 1 : -1), flag<Wrist>(&w == &wrists[0] ? 1 : -1)});
             }
         }

@@ -14,7 +14,7 @@ public:
     /// Axes 1 and 2 must not be parallel, nor axis 4 and axis 2, nor may axes 2 and 3, or 3 and the wrist's centre, be one.
     explicit WristArm(const Chain& chain) noexcept;
 
-    /// All ways, in the chain's joints, angles in (-pi, pi]. `near`: what keeps its value where a joint is free (in a singularity).
+    /// All ways, in the chain's joints, in whatever turn. `near`: what keeps its value where a joint is free (in a singularity).
     [[nodiscard]] ArmSolutions solve(const Frame<double>& flange, const Joints& near) const noexcept;
     [[nodiscard]] Branch branch(const Joints& joints) const noexcept;
     /// shoulder: distance of the wrist's centre from axis 1, over the reach. elbow: sine of the angle between upper arm and the line from axis
@@ -34,6 +34,7 @@ private:
     double aside_ = 0;             ///< axis 1 to the wrist's centre, across
     double upper_ = 1, fore_ = 1;  ///< axis 2 to axis 3, axis 3 to the wrist's centre
     double bend_ = 0;              ///< angle between the forearm's axis and the line from axis 3 to the wrist's centre
+    double bend_sine_ = 0, bend_cosine_ = 1;
     Joints sign_{1, 1, 1, 1, 1, 1};
     Joints offset_{};
 };

@@ -18,8 +18,6 @@ void expect_pose(const PublishedArm& arm, const Joints& axes, const Pose& expect
     EXPECT_LT(d.angle, 1e-12) << ::testing::PrintToString(there.pose.orientation);
 }
 
-constexpr double right = 90 * degree;
-
 // Forearm level, flange to the front: lengths add up.
 TEST(KnownPoses, ArmsOfAbbAtZero) {
     expect_pose(irb_120(), {}, posed(.302 + .072, 0, .290 + .270 + .070, 0, right, 0));

@@ -10,6 +10,7 @@
 namespace taktwerk::axes {
 
 inline constexpr double degree = std::numbers::pi / 180;
+inline constexpr double right = std::numbers::pi / 2;
 
 struct PublishedArm {
     std::string name;
@@ -65,7 +66,6 @@ inline PublishedArm tx40() {
 }
 // Universal Robots, "DH parameters for calculations of kinematics and dynamics", UR5e (classic convention).
 inline SixJoints::Table ur5e_table() {
-    constexpr double right = std::numbers::pi / 2;
     return {{{{0, right, .1625, 0}, {-.425, 0, 0, 0}, {-.3922, 0, 0, 0}, {0, right, .1333, 0}, {0, -right, .0997, 0}, {0, 0, .0996, 0}}},
             DhConvention::classic};
 }
@@ -76,7 +76,6 @@ inline PublishedArm ur5e() {
 // Abbes, Poisson: Geometric approach for inverse kinematics of the FANUC CRX collaborative robot, Robotics 2024, 13, 91, table 2 (modified
 // convention). Axis 5 passes axis 4 at 150 mm: no closed form. Joint 3 of the table is the sum of the maker's J2 and J3.
 inline PublishedArm crx_10ia() {
-    constexpr double right = std::numbers::pi / 2;
     const SixJoints::Table table{{{{0, 0, 0, 0},
                                    {0, -right, 0, -right},
                                    {.540, 2 * right, 0, 0},

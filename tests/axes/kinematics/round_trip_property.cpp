@@ -25,7 +25,8 @@ struct Found {
 
 std::ostream& operator<<(std::ostream& out, const Found& f) {
     return out << f.poses << " poses, " << f.ways << " ways, worst " << f.position << " m, " << f.angle << " rad; no way to " << f.none
-               << ", another way than it came " << f.lost << (f.from_afar > 0 ? ", from afar " + std::to_string(f.from_afar) : "");
+               << ", another way than it came " << f.lost
+               << (f.from_afar > 0 ? ", from afar " + std::to_string(f.from_afar) + " of a tenth" : "");
 }
 
 /// Do flags and turns stay as they are when the joints move a little?
@@ -63,7 +64,7 @@ TEST_P(RoundTrip, EveryWayLeadsBackToThePose) {
 
         ++found.poses;
         const double nearness = kinematics.singularity(q).measure;
-        if (ways.count == 0 && nearness > 1e-9) ++found.none;
+        if (ways.count == 0 && nearness > 1e-6) ++found.none;
         bool came_back = false;
         for (int k = 0; k < ways.count; ++k) {
             const AxisSolution& way = ways.at[static_cast<std::size_t>(k)];
@@ -81,12 +82,12 @@ TEST_P(RoundTrip, EveryWayLeadsBackToThePose) {
                 furthest = std::max(furthest, rotary[j] ? way_round(way.axes[j], q[j]) : std::abs(way.axes[j] - q[j]));
             came_back = came_back || furthest < 1e-7 + 1e-14 / (nearness * nearness);
             // Flags and turns are those of the joints, but where their sign is rounding.
-            if (settled(kinematics, way.axes)) {
-                ASSERT_EQ(way.configuration, kinematics.configuration(way.axes));
+            if (!(way.configuration == kinematics.configuration(way.axes))) {
+                ASSERT_FALSE(settled(kinematics, way.axes));
             }
         }
         if (!came_back && nearness > 1e-6) ++found.lost;
-        if (numeric) found.from_afar += kinematics.inverse_all(there.pose, tool, {}).count == 0 ? 0 : 1;
+        if (numeric && i % 10 == 0) found.from_afar += kinematics.inverse_all(there.pose, tool, {}).count == 0 ? 0 : 1;
     }
 
     if (std::getenv("TAKTWERK_SOAK_FACTOR") != nullptr) std::cout << arm.name << ": " << found << "\n";
