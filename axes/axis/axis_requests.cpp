@@ -129,8 +129,8 @@ ErrorId Axis::refuses_group(Owner owner) noexcept {
     if (body.slow_line) return ErrorId::not_supported;
     if (body.led()) return ErrorId::axis_grouped;
     if (const auto error = axis.admission.refuse(group_command(body.config.limits, nullptr)); error != ErrorId::none) return error;
-    const bool free = body.state == AxisState::Standstill && !body.queue.has_active() && body.queue.waiting() == 0 && !axis.conduct.moves() &&
-                      axis.homing.passive.id() == 0;
+    const bool free = body.state == AxisState::Standstill && !body.queue.has_active() && body.queue.waiting() == 0 &&
+                      !axis.conduct.moves() && axis.homing.passive.id() == 0;
     return free ? ErrorId::none : ErrorId::member_moves;
 }
 
@@ -138,8 +138,9 @@ Submitted Axis::join_group(const void* instance, Owner owner) noexcept {
     if (const auto error = refuses_group(owner); error != ErrorId::none) return {0, error};
     auto& axis = *core_;
     axis.plain.disturb();
-    axis.motion.given.begin_feed();
     const auto given = take(axis, group_command(axis.body.config.limits, instance), owner);
+    // At once: its first set-point comes before it plans, and is meant in the coordinates in which it begins.
+    if (given.id != 0) axis.succession.begin_command();
     show_all(axis);
     return given;
 }

@@ -112,7 +112,9 @@ static_assert(sound(), "each kind has its row, in the order of CommandKind");
 [[nodiscard]] constexpr bool follows_table(CommandKind kind) noexcept { return kind_table::has(kind, kind_table::over_time); }
 
 /// Its set-points are given from outside, in each cycle: by a program, or by a group.
-[[nodiscard]] constexpr bool is_fed(CommandKind kind) noexcept { return kind == CommandKind::external || kind == CommandKind::group_motion; }
+[[nodiscard]] constexpr bool is_fed(CommandKind kind) noexcept {
+    return kind == CommandKind::external || kind == CommandKind::group_motion;
+}
 
 /// Kinds of a slave: SynchronizedMotion.
 [[nodiscard]] constexpr bool couples(CommandKind kind) noexcept { return kind_table::has(kind, kind_table::couples); }

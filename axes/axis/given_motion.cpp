@@ -75,7 +75,7 @@ ErrorId GivenMotion::take(const AxisCommand& command) noexcept {
         if (const auto error = make_curve(command, Addition::stays); error != ErrorId::none) return error;
         profile_.take_spare();
         profile_.behind = 0;
-    } else if (command.kind != CommandKind::group_motion) {  // a group has given the first one already
+    } else {
         feed_ = {};
     }
     return ErrorId::none;
@@ -169,7 +169,10 @@ ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
     if (std::abs(mean - (next.velocity + from.velocity) / 2) > change + grain) return ErrorId::invalid_dynamics;
     if (body_.software_limits_hold()) {
         const double end = body_.units.to_program(next.position + stopping_distance(next, in_each_direction(full_limits(limits), limits)));
-        if (end > body_.config.limits.position_max || end < body_.config.limits.position_min) return ErrorId::beyond_software_limit;
+        // A motion planned to end exactly there ends there but for the last digits.
+        const double digits = 1e-12 * std::max(std::abs(end), std::abs(next.position));
+        if (end > body_.config.limits.position_max + digits || end < body_.config.limits.position_min - digits)
+            return ErrorId::beyond_software_limit;
     }
     return ErrorId::none;
 }

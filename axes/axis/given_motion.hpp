@@ -27,8 +27,6 @@ public:
     [[nodiscard]] double base_speed(double sense) const noexcept;
     /// The next set-point, for a command that is fed.
     ErrorId feed(const SetpointFeed& fed) noexcept;
-    /// A group begins to give set-points.
-    void begin_feed() noexcept { feed_ = {}; }
 
     /// Room for tables. Not real-time.
     void reserve(std::size_t rows) {

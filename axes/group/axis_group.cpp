@@ -1,0 +1,245 @@
+// The order of a cycle, and what leads from one state to the next. What others ask for: group_requests.cpp.
+
+#include "axes/group/axis_group.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "axes/group/motion_target.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+PathDynamics resolved(const PathDynamics& wanted, const PathDynamics& fallback) noexcept {
+    const auto pick = [](double value, double other) { return value > 0 ? value : other; };
+    return {pick(wanted.velocity, fallback.velocity), pick(wanted.acceleration, fallback.acceleration),
+            pick(wanted.deceleration, fallback.deceleration), pick(wanted.jerk, fallback.jerk)};
+}
+
+}  // namespace
+
+std::string_view name(GroupState state) noexcept {
+    constexpr std::array<std::string_view, group_state_count> names{"GroupDisabled", "GroupStandby",  "GroupHoming",
+                                                                    "GroupMoving",   "GroupStopping", "GroupErrorStop"};
+    return names[static_cast<std::size_t>(state)];
+}
+
+AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle)
+    : config_(std::move(config)), members_(axes), cycle_(cycle) {
+    for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
+    view_.kinematics = config_.kinematics;
+    view_.default_dynamics = config_.default_dynamics;
+    publish();
+}
+
+void AxisGroup::fire(GroupEvent event) noexcept {
+    if (const auto to = next_state(state_, event)) state_ = *to;
+}
+
+void AxisGroup::abort_all() noexcept {
+    queue_.finish_active(Outcome::aborted);
+    queue_.finish_waiting(Outcome::aborted);
+    if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);
+    interrupting_ = 0;
+    interrupted_ = begun_ = false;
+}
+
+void AxisGroup::leave(GroupEvent event) noexcept {
+    members_.leave();
+    if (!interrupted_) run_.clear();
+    fire(event);
+}
+
+void AxisGroup::fail(std::uint16_t error) noexcept {
+    if (!next_state(state_, GroupEvent::error) || state_ == GroupState::GroupErrorStop) return;
+    view_.error = error;
+    view_.reset_error = ErrorId::none;
+    fire(GroupEvent::error);
+    queue_.finish_active(Outcome::error, static_cast<ErrorId>(error));
+    queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
+    if (interrupting_ != 0) queue_.record(interrupting_, Outcome::error, ErrorId::aborted_by_axis_error);
+    interrupting_ = lock_ = 0;
+    interrupted_ = begun_ = false;
+    run_.stop({}, Override{}, cycle_);
+}
+
+// --- the cycle ------------------------------------------------------------------------------------------------------------------
+
+void AxisGroup::update(Instant) noexcept {
+    const auto loss = members_.lost();
+    if (state_ != GroupState::GroupDisabled && state_ != GroupState::GroupErrorStop) {
+        const std::uint16_t error = loss.error != 0 ? loss.error : members_.error_of_any();
+        if (error != 0) fail(error);
+        else if (loss.any) fail(static_cast<std::uint16_t>(ErrorId::member_left));
+    }
+    if (view_.resetting) watch_reset();
+    publish();
+}
+
+void AxisGroup::watch_reset() noexcept {
+    if (state_ != GroupState::GroupErrorStop) {
+        view_.resetting = false;
+        return;
+    }
+    if (members_.led()) return;
+    auto failed = ErrorId::none;
+    for (std::size_t i = 0; i < most_members; ++i) {
+        if (!members_.has(i)) continue;
+        const auto& axis = members_.axis(i).view();
+        if (axis.resetting) return;
+        if (axis.state == AxisState::ErrorStop && failed == ErrorId::none)
+            failed = axis.reset_error != ErrorId::none ? axis.reset_error : ErrorId::reset_failed;
+    }
+    view_.resetting = false;
+    view_.reset_error = failed;
+    if (failed != ErrorId::none) return;
+    view_.error = 0;
+    fire(GroupEvent::reset);
+}
+
+void AxisGroup::plan(Instant, Duration period) noexcept {
+    if (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || shuts_down_) {
+        if (run_.over() || !members_.led()) settle();
+        if (members_.led()) go_on(period);
+    }
+    publish();
+}
+
+/// The group stands: what comes next.
+void AxisGroup::settle() noexcept {
+    if (disabling_ != 0) {
+        leave(GroupEvent::disable);
+        queue_.record(disabling_, Outcome::done);
+        disabling_ = 0;
+        return;
+    }
+    if (shuts_down_) {
+        shuts_down_ = false;
+        leave(state_ == GroupState::GroupStopping ? GroupEvent::stopped : GroupEvent::done);
+        for (std::size_t i = 0; i < most_members; ++i)
+            if (members_.has(i)) members_.axis(i).shut_down();
+        return;
+    }
+    if (state_ == GroupState::GroupErrorStop) return leave(GroupEvent::error);
+    if (state_ == GroupState::GroupStopping) {
+        queue_.finish_active(Outcome::done);
+        if (lock_ == 0) leave(GroupEvent::stopped);
+        return;
+    }
+    if (interrupting_ != 0) {
+        queue_.record(interrupting_, Outcome::done);
+        interrupting_ = 0;
+        interrupted_ = true;
+        return leave(GroupEvent::done);
+    }
+    for (;;) {
+        if (!queue_.has_active()) {
+            if (queue_.waiting() == 0) return leave(GroupEvent::done);
+            queue_.activate_next();
+            begun_ = false;
+        }
+        if (begun_ || begin_active()) return;
+    }
+}
+
+bool AxisGroup::begin_active() noexcept {
+    const auto command = queue_.active().command;
+    begun_ = true;
+    elapsed_ = {};
+    if (command.kind == GroupCommandKind::wait) return true;
+    auto error = ErrorId::none;
+    if (goes_a_way(command.kind)) {
+        hold_ = here();
+        const auto target = target_of(command, hold_, members_);
+        const auto way = StraightWay::between(hold_, target);
+        error = refuse_target(command, target, members_);
+        if (error == ErrorId::none && way.length > 0) {
+            const auto wanted = resolved(command.dynamics, view_.default_dynamics);
+            if (run_.begin(way, members_.limits_along(way), wanted, view_.override_factors)) {
+                view_.commanded = target;
+                return true;
+            }
+            error = ErrorId::invalid_dynamics;
+        }
+    }
+    queue_.finish_active(error == ErrorId::none ? Outcome::done : Outcome::error, error);
+    return false;
+}
+
+/// One period of the way, or of the wait.
+void AxisGroup::go_on(Duration period) noexcept {
+    const bool moves = run_.exists() && !run_.arrived();
+    if (moves) run_.advance(period);
+    const auto error = members_.lead([&](std::size_t place) { return run_.exists() ? run_.of(place) : MotionState{hold_[place], 0, 0}; });
+    if (error != ErrorId::none) {
+        fail(static_cast<std::uint16_t>(error));
+        return;
+    }
+    if (!begun_ || !queue_.has_active()) return;
+    const auto& command = queue_.active().command;
+    const bool interrupts = interrupting_ != 0;
+    if (!(interrupts && command.kind == GroupCommandKind::wait)) elapsed_ += period;
+    const bool done =
+        command.kind == GroupCommandKind::wait ? !interrupts && elapsed_ >= command.duration : goes_a_way(command.kind) && run_.arrived();
+    if (done) queue_.finish_active(Outcome::done);
+}
+
+JointVector AxisGroup::here() const noexcept {
+    if (!members_.led()) return members_.set_positions();
+    if (!run_.exists()) return hold_;
+    JointVector at = hold_;
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (members_.has(i)) at[i] = run_.of(i).position;
+    return at;
+}
+
+void AxisGroup::publish() noexcept {
+    view_.state = state_;
+    view_.interrupted = interrupted_;
+    view_.member_count = static_cast<std::uint8_t>(members_.count());
+    view_.members = members_.refs();
+    view_.powered = view_.online = view_.in_position = view_.member_count > 0;
+    const bool led = members_.led();
+    for (std::size_t i = 0; i < most_members; ++i) {
+        if (!members_.has(i)) {
+            view_.set_position[i] = view_.set_velocity[i] = view_.set_acceleration[i] = view_.actual_position[i] =
+                view_.actual_velocity[i] = 0;
+            continue;
+        }
+        const auto& axis = members_.axis(i).view();
+        const MotionState set = !led            ? MotionState{axis.set_position, axis.set_velocity, axis.set_acceleration}
+                                : run_.exists() ? run_.of(i)
+                                                : MotionState{hold_[i], 0, 0};
+        view_.set_position[i] = set.position;
+        view_.set_velocity[i] = set.velocity;
+        view_.set_acceleration[i] = set.acceleration;
+        view_.actual_position[i] = axis.actual_position;
+        view_.actual_velocity[i] = axis.actual_velocity;
+        view_.powered = view_.powered && axis.powered;
+        view_.online = view_.online && axis.online;
+        view_.in_position = view_.in_position && axis.in_position;
+        if (!run_.exists()) view_.commanded[i] = set.position;
+    }
+    const auto& along = run_.along();
+    view_.path_velocity = led ? along.velocity : 0;
+    view_.path_acceleration = led ? along.acceleration : 0;
+    view_.limiter = led ? run_.limiter() : PathLimiter::none;
+    view_.limiting_place = run_.narrowest();
+    const bool on_way = begun_ && queue_.has_active() && goes_a_way(queue_.active().command.kind) && run_.exists();
+    view_.elapsed = begun_ && queue_.has_active() ? elapsed_ : Duration{};
+    view_.remaining_distance = on_way ? run_.remaining() : 0;
+    view_.remaining = on_way ? from_seconds(run_.remaining_time()) : Duration{};
+    view_.progress = on_way ? 1 - run_.remaining() / run_.length() : 0;
+    if (begun_ && queue_.active().command.kind == GroupCommandKind::wait) {
+        const auto duration = queue_.active().command.duration;
+        view_.remaining = std::max(Duration{}, duration - elapsed_);
+        view_.progress = duration > Duration{} ? to_seconds(elapsed_) / to_seconds(duration) : 0;
+    }
+    view_.lock = lock_;
+    view_.interrupting = interrupting_;
+    view_.disabling = disabling_;
+    queue_.publish(view_);
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,44 @@
+#pragma once
+// All groups of a machine: their part of a cycle, and the way of the base task's programs to them.
+
+#include <span>
+#include <vector>
+
+#include "axes/group/axis_group.hpp"
+#include "axes/group/group_access.hpp"
+
+namespace taktwerk::axes {
+
+class AxisGroups final : public GroupAccess {
+public:
+    AxisGroups() = default;
+    /// Not real-time; `axes` are all axes of the machine and must live longer.
+    void build(const std::vector<AxisGroupConfig>& configs, std::span<Axis> axes, Duration cycle);
+
+    /// After the axes' update() and supervise().
+    void update(Instant now) noexcept {
+        for (auto& group : groups_) group.update(now);
+    }
+    /// Before the axes' plan().
+    void plan(Instant now, Duration period) noexcept {
+        for (auto& group : groups_) group.plan(now, period);
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return groups_.size(); }
+    [[nodiscard]] AxisGroup& operator[](std::size_t i) noexcept { return groups_[i]; }
+    [[nodiscard]] const AxisGroup& operator[](std::size_t i) const noexcept { return groups_[i]; }
+    /// The group that moves this axis now; nullptr: none does.
+    [[nodiscard]] AxisGroup* leader_of(AxisRef axis) noexcept;
+
+    [[nodiscard]] const GroupView* view(GroupRef group) const noexcept override;
+    Submitted submit(GroupRef group, const GroupCommand& command, Owner owner) noexcept override;
+    ErrorId set(GroupRef group, const GroupSetting& setting, Owner owner) noexcept override;
+    ErrorId reset(GroupRef group, Owner owner) noexcept override;
+    void release_stop(GroupRef group, CommandId id, Owner owner) noexcept override;
+    [[nodiscard]] GroupRef group_of(AxisRef axis) const noexcept override;
+
+private:
+    [[nodiscard]] AxisGroup* find(GroupRef group) noexcept { return group.index < groups_.size() ? &groups_[group.index] : nullptr; }
+    std::vector<AxisGroup> groups_;
+};
+
+}  // namespace taktwerk::axes

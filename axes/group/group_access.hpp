@@ -1,0 +1,25 @@
+#pragma once
+// How programs and blocks reach groups: MotionContext::groups. Every function answers at once and is real-time safe.
+
+#include "axes/group/group_view.hpp"
+
+namespace taktwerk::axes {
+
+class GroupAccess {
+public:
+    /// nullptr for an invalid handle: blocks answer with ErrorId::invalid_group.
+    [[nodiscard]] virtual const GroupView* view(GroupRef group) const noexcept = 0;
+    virtual Submitted submit(GroupRef group, const GroupCommand& command, Owner owner) noexcept = 0;
+    virtual ErrorId set(GroupRef group, const GroupSetting& setting, Owner owner) noexcept = 0;
+    /// Outside GroupErrorStop: none, and nothing happens. In it: see GroupView::resetting.
+    virtual ErrorId reset(GroupRef group, Owner owner) noexcept = 0;
+    /// MC_GroupStop's Execute fell.
+    virtual void release_stop(GroupRef group, CommandId id, Owner owner) noexcept = 0;
+    /// Of which group the axis is a member; invalid: of none.
+    [[nodiscard]] virtual GroupRef group_of(AxisRef axis) const noexcept = 0;
+
+protected:
+    ~GroupAccess() = default;
+};
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,82 @@
+#pragma once
+// What is submitted to a group. A value: the latch of a block's inputs. Trivially copyable.
+
+#include <cstdint>
+#include <type_traits>
+#include <variant>
+
+#include "axes/axis/command.hpp"
+#include "axes/group/group_types.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes {
+
+enum class GroupCommandKind : std::uint8_t {
+    none,
+    // in the queue
+    linear_absolute,  ///< the tool's point on a straight line; in ACS: the axes
+    linear_relative,  ///< target = distance
+    direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
+    direct_relative,
+    wait,  ///< duration
+    halt,
+    // beside it
+    stop,       ///< locks the group while it is held (release_stop)
+    interrupt,  ///< the commands stay, and go on with resume
+    resume,     ///< MC_GroupContinue
+    disable,    ///< GroupDisabled once the group stands
+};
+[[nodiscard]] constexpr bool goes_a_way(GroupCommandKind kind) noexcept {
+    return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::direct_relative;
+}
+[[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
+    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::direct_relative;
+}
+[[nodiscard]] constexpr bool has_place_in_queue(GroupCommandKind kind) noexcept {
+    return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::halt;
+}
+
+/// Of a path: u/s, u/s2, u/s3; 0 or less = not said.
+struct PathDynamics {
+    double velocity = 0, acceleration = 0, deceleration = 0, jerk = 0;
+    friend bool operator==(const PathDynamics&, const PathDynamics&) = default;
+};
+
+struct GroupCommand {
+    GroupCommandKind kind = GroupCommandKind::none;
+    MC_CoordSystem frame = mcACS;
+    MC_BufferMode buffer_mode = mcAborting;
+    MC_TransitionMode transition = mcTMNone;
+    MC_OrientationMode orientation = mcLinear;
+    JointVector target{};  ///< ACS: by place. Other frames: X Y Z [u], RX RY RZ [rad]
+    PathDynamics dynamics{};
+    Duration duration{};
+    const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
+    friend bool operator==(const GroupCommand&, const GroupCommand&) = default;
+};
+static_assert(std::is_trivially_copyable_v<GroupCommand>);
+
+// --- at once, no motion -----------------------------------------------------------------------------------------------------
+
+/// MC_AddAxisToGroup; `ident` from 1 to most_members.
+struct AddMember {
+    AxisRef axis{};
+    std::uint8_t ident = 0;
+};
+/// MC_RemoveAxisFromGroup.
+struct RemoveMember {
+    std::uint8_t ident = 0;
+};
+/// MC_UngroupAllAxes.
+struct RemoveAllMembers {};
+/// MC_GroupEnable.
+struct EnableGroup {};
+/// MC_GroupWriteDefaultDynamics, MC_GroupWriteReferenceDynamics: negative = stays as it is.
+struct WriteDynamics {
+    enum class Which : std::uint8_t { default_dynamics, reference_dynamics } which = Which::default_dynamics;
+    PathDynamics dynamics{};
+};
+/// AddMember ... | MC_GroupSetOverride
+using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override>;
+
+}  // namespace taktwerk::axes

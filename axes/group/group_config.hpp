@@ -1,0 +1,25 @@
+#pragma once
+// One group as configured. Plain data, checked by check().
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "axes/group/group_command.hpp"
+#include "core/result.hpp"
+
+namespace taktwerk::axes {
+
+struct AxisGroupConfig {
+    std::string name;
+    std::vector<std::string> members{};  ///< in the order of their identifiers 1, 2, ...; a program may add others
+    GroupKinematics kinematics = GroupKinematics::none;
+    PathDynamics default_dynamics{};  ///< 0 = what the axes' limits leave on a path
+};
+
+/// Every problem; `axes`: the names of the machine's axes. Codes: group.no_name, group.name_twice, group.too_many_members, group.unknown_axis,
+/// group.axis_twice, group.dynamics, group.kinematics.
+[[nodiscard]] std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<const std::string> axes);
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,256 @@
+// What others ask of a group: checked and answered in the same call.
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/group/axis_group.hpp"
+#include "axes/group/motion_target.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+bool usable(const Override& factors) noexcept {
+    const auto factor = [](double value) { return value > 0 && value <= 1; };
+    return factors.velocity >= 0 && factors.velocity <= 1 && factor(factors.acceleration) && factor(factors.jerk);
+}
+
+ErrorId check_dynamics(const PathDynamics& dynamics) noexcept {
+    if (!std::isfinite(dynamics.velocity)) return ErrorId::invalid_velocity;
+    const bool finite = std::isfinite(dynamics.acceleration) && std::isfinite(dynamics.deceleration) && std::isfinite(dynamics.jerk);
+    return finite ? ErrorId::none : ErrorId::invalid_dynamics;
+}
+
+}  // namespace
+
+bool AxisGroup::waits(const GroupCommand& command) const noexcept {
+    return command.buffer_mode != mcAborting && (queue_.has_active() || queue_.waiting() > 0 || interrupted_);
+}
+
+/// G-011, G-064: what the state has an answer to.
+ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
+    using enum GroupState;
+    const auto kind = command.kind;
+    if (kind == GroupCommandKind::disable) return disabling_ == 0 ? ErrorId::none : ErrorId::state_forbids;
+    if (state_ == GroupDisabled) return ErrorId::group_disabled;
+    if (state_ == GroupErrorStop) return ErrorId::in_error_stop;
+    if (disabling_ != 0 || shuts_down_) return ErrorId::state_forbids;
+    if (kind == GroupCommandKind::stop) return lock_ == 0 ? ErrorId::none : ErrorId::state_forbids;
+    if (state_ == GroupStopping) return ErrorId::state_forbids;
+    if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
+    if (kind == GroupCommandKind::resume) return interrupted_ ? ErrorId::none : ErrorId::nothing_interrupted;
+    return interrupting_ != 0 && !waits(command) ? ErrorId::state_forbids : ErrorId::none;
+}
+
+ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
+    if (command.transition != mcTMNone || command.orientation != mcLinear) return ErrorId::not_supported;
+    if (const auto error = refuse_frame(command.frame, config_.kinematics, members_); error != ErrorId::none) return error;
+    // Relative to what: a command that waits, or brakes another one first, is checked where it begins.
+    const bool known = !is_relative(command.kind) || (!waits(command) && run_.over());
+    return known ? refuse_target(command, target_of(command, here(), members_), members_) : ErrorId::none;
+}
+
+ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexcept {
+    if (command.kind == GroupCommandKind::none || command.kind > GroupCommandKind::disable) return ErrorId::invalid_parameter;
+    if (members_.owned_by_other(owner)) return ErrorId::owned_by_other;
+    if (const auto error = refuse_state(command); error != ErrorId::none) return error;
+    if (const auto error = check_dynamics(command.dynamics); error != ErrorId::none) return error;
+    if (command.buffer_mode > mcBlendingHigh) return ErrorId::buffer_mode_not_supported;
+    if (command.kind == GroupCommandKind::wait && command.duration < Duration{}) return ErrorId::invalid_parameter;
+    if (goes_a_way(command.kind))
+        if (const auto error = refuse_way(command); error != ErrorId::none) return error;
+    return has_place_in_queue(command.kind) && waits(command) && queue_.full() ? ErrorId::queue_full : ErrorId::none;
+}
+
+Submitted AxisGroup::submit(const GroupCommand& command, Owner owner) noexcept {
+    if (const auto error = refuse(command, owner); error != ErrorId::none) return {0, error};
+    Submitted answer;
+    switch (command.kind) {
+        case GroupCommandKind::stop: answer.id = take_stop(command, owner); break;
+        case GroupCommandKind::interrupt: answer.id = take_interrupt(command); break;
+        case GroupCommandKind::resume: answer = take_resume(command, owner); break;
+        case GroupCommandKind::disable: answer.id = take_disable(); break;
+        default: answer = take_motion(command, owner); break;
+    }
+    publish();
+    return answer;
+}
+
+Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexcept {
+    if (waits(command)) {
+        const auto id = queue_.next_id();
+        queue_.push({id, owner, command});
+        return {id, ErrorId::none};
+    }
+    const bool stands = !members_.led();
+    if (stands && command.kind == GroupCommandKind::halt) {
+        abort_all();
+        const auto id = queue_.next_id();
+        queue_.record(id, Outcome::done);
+        return {id, ErrorId::none};
+    }
+    if (stands)
+        if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
+    abort_all();
+    if (stands) {
+        run_.clear();
+        hold_ = members_.set_positions();
+    } else {
+        run_.stop(command.dynamics, view_.override_factors, cycle_);
+    }
+    const auto id = queue_.next_id();
+    queue_.activate({id, owner, command});
+    fire(GroupEvent::motion);
+    return {id, ErrorId::none};
+}
+
+CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcept {
+    abort_all();
+    lock_ = queue_.next_id();
+    queue_.activate({lock_, owner, command});
+    begun_ = true;
+    fire(GroupEvent::stop);
+    if (members_.led()) run_.stop(command.dynamics, Override{}, cycle_);
+    return lock_;
+}
+
+CommandId AxisGroup::take_interrupt(const GroupCommand& command) noexcept {
+    const auto id = queue_.next_id();
+    if (members_.led()) {
+        interrupting_ = id;
+        run_.stop(command.dynamics, Override{}, cycle_);
+    } else {
+        interrupted_ = true;
+        queue_.record(id, Outcome::done);
+    }
+    return id;
+}
+
+Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexcept {
+    const bool on_way = queue_.has_active() && begun_ && goes_a_way(queue_.active().command.kind);
+    if (on_way)
+        for (std::size_t i = 0; i < most_members; ++i) {
+            if (!members_.has(i)) continue;
+            const double place = run_.of(i).position;
+            if (std::abs(members_.axis(i).view().set_position - place) > 1e-9 * std::max(1.0, std::abs(place)))
+                return {0, ErrorId::not_at_interruption};
+        }
+    if (queue_.has_active() || queue_.waiting() > 0) {
+        if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
+        if (on_way) {
+            run_.resume(view_.override_factors);
+        } else {
+            run_.clear();
+            hold_ = members_.set_positions();
+        }
+        fire(GroupEvent::motion);
+    }
+    interrupted_ = false;
+    const auto id = queue_.next_id();
+    queue_.record(id, Outcome::done);
+    return {id, ErrorId::none};
+}
+
+CommandId AxisGroup::take_disable() noexcept {
+    abort_all();
+    lock_ = 0;
+    const auto id = queue_.next_id();
+    if (members_.led()) {
+        disabling_ = id;
+        run_.stop({}, Override{}, cycle_);
+    } else {
+        fire(GroupEvent::disable);
+        queue_.record(id, Outcome::done);
+    }
+    return id;
+}
+
+void AxisGroup::halt() noexcept {
+    const bool stops = interrupting_ != 0 || disabling_ != 0 || shuts_down_ || queue_.active().command.kind == GroupCommandKind::halt;
+    if (state_ != GroupState::GroupMoving || !members_.led() || stops) return;
+    GroupCommand command;
+    command.kind = GroupCommandKind::halt;
+    (void)take_motion(command, queue_.active().owner);
+    publish();
+}
+
+void AxisGroup::shut_down() noexcept {
+    if (!members_.led()) return;
+    abort_all();
+    lock_ = 0;
+    shuts_down_ = true;
+    run_.stop({}, Override{}, cycle_);
+    publish();
+}
+
+void AxisGroup::release_stop(CommandId id) noexcept {
+    if (id != 0 && id == lock_) lock_ = 0;
+    view_.lock = lock_;
+}
+
+// --- settings -------------------------------------------------------------------------------------------------------------------
+
+ErrorId AxisGroup::change_members(const GroupSetting& setting) noexcept {
+    if (const auto* added = std::get_if<AddMember>(&setting))
+        return state_ == GroupState::GroupDisabled ? members_.add(added->axis, added->ident) : ErrorId::state_forbids;
+    if (const auto* removed = std::get_if<RemoveMember>(&setting))
+        return state_ == GroupState::GroupDisabled ? members_.remove(removed->ident) : ErrorId::state_forbids;
+    if (members_.led() || state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming) return ErrorId::state_forbids;
+    abort_all();
+    run_.clear();
+    members_.remove_all();
+    view_.error = 0;
+    fire(GroupEvent::disable);
+    return ErrorId::none;
+}
+
+ErrorId AxisGroup::enable() noexcept {
+    if (members_.count() == 0) return ErrorId::no_members;
+    if (state_ == GroupState::GroupErrorStop) return ErrorId::in_error_stop;
+    const auto event = view_.error != 0 && state_ == GroupState::GroupDisabled ? GroupEvent::enable_failed : GroupEvent::enable;
+    if (!next_state(state_, event)) return ErrorId::state_forbids;
+    fire(event);
+    return event == GroupEvent::enable ? ErrorId::none : ErrorId::in_error_stop;
+}
+
+ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
+    if (members_.owned_by_other(owner)) return ErrorId::owned_by_other;
+    auto error = ErrorId::none;
+    if (std::holds_alternative<EnableGroup>(setting)) {
+        error = enable();
+    } else if (const auto* factors = std::get_if<Override>(&setting)) {
+        if (!usable(*factors)) return ErrorId::invalid_override;
+        view_.override_factors = *factors;
+        run_.override_with(*factors);
+    } else if (const auto* written = std::get_if<WriteDynamics>(&setting)) {
+        if (error = check_dynamics(written->dynamics); error != ErrorId::none) return error;
+        auto& kept = written->which == WriteDynamics::Which::default_dynamics ? view_.default_dynamics : view_.reference_dynamics;
+        const auto put = [](double& to, double value) {
+            if (value > 0) to = value;
+        };
+        put(kept.velocity, written->dynamics.velocity);
+        put(kept.acceleration, written->dynamics.acceleration);
+        put(kept.deceleration, written->dynamics.deceleration);
+        put(kept.jerk, written->dynamics.jerk);
+    } else {
+        error = change_members(setting);
+    }
+    publish();
+    return error;
+}
+
+ErrorId AxisGroup::reset(Owner owner) noexcept {
+    if (state_ != GroupState::GroupErrorStop) return ErrorId::none;
+    view_.reset_error = ErrorId::none;
+    for (std::size_t i = 0; i < most_members; ++i) {
+        if (!members_.has(i) || members_.axis(i).view().state != AxisState::ErrorStop) continue;
+        if (const auto error = members_.axis(i).reset(owner); error != ErrorId::none) {
+            view_.resetting = false;
+            return view_.reset_error = error;
+        }
+    }
+    view_.resetting = true;
+    return ErrorId::none;
+}
+
+}  // namespace taktwerk::axes

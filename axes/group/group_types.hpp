@@ -1,0 +1,34 @@
+#pragma once
+// The words of a group of axes: states, frames, ways to blend. PLCopen Part 4's spellings, with mc (docs/motion/group-decisions.md).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "axes/words/types.hpp"
+
+namespace taktwerk::axes {
+
+/// A member's place is its IdentInGroup - 1, from 0 on.
+inline constexpr std::size_t most_members = 16;
+/// One number a place; those of places without a member mean nothing. u, u/s, ... of each axis.
+using JointVector = std::array<double, most_members>;
+
+enum class GroupState : std::uint8_t { GroupDisabled, GroupStandby, GroupHoming, GroupMoving, GroupStopping, GroupErrorStop };
+inline constexpr std::size_t group_state_count = 6;
+[[nodiscard]] std::string_view name(GroupState state) noexcept;
+
+/// In which coordinates a position is meant: the axes themselves, the machine, the world, a product, flange or fixture, the tool.
+enum MC_CoordSystem : std::uint8_t { mcACS, mcMCS, mcWCS, mcPCS, mcFCS, mcTCS };
+/// The curve at a joint of two motions.
+enum MC_TransitionMode : std::uint8_t { mcTMNone, mcTMStartVelocity, mcTMConstantVelocity, mcTMCornerDistance, mcTMMaxCornerDeviation };
+/// v2.0: how fast that joint is passed.
+enum MC_TransitionVelocity : std::uint8_t { mcTVZero, mcTVLow, mcTVPrevious, mcTVNext, mcTVHigh };
+/// How the tool turns on the way.
+enum MC_OrientationMode : std::uint8_t { mcLinear, mcJointInterpolated, mcFixed, mcPathBased };
+
+/// How a group gets from axes to poses. `identity`: members 1 to 3 are X, Y, Z.
+enum class GroupKinematics : std::uint8_t { none, identity };
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,88 @@
+#pragma once
+// What everyone else sees of a group: one value per group and cycle. Trivially copyable.
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "axes/group/group_command.hpp"
+
+namespace taktwerk::axes {
+
+/// What held the path velocity down.
+enum class PathLimiter : std::uint8_t { none, command, axis, override_factor };
+
+struct GroupView {
+    static constexpr std::size_t most_waiting = 16;
+
+    GroupState state = GroupState::GroupDisabled;
+    std::uint16_t error = 0;  ///< alarm id or ErrorId that leads or led to GroupErrorStop, until it is reset; 0 = none
+    bool resetting = false;
+    ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
+    bool interrupted = false;             ///< stands, and MC_GroupContinue goes on
+    GroupKinematics kinematics = GroupKinematics::none;
+
+    std::uint8_t member_count = 0;
+    std::array<AxisRef, most_members> members{};  ///< by place; invalid: none
+    bool powered = false;                         ///< all members; FALSE without members
+    bool in_position = false;                     ///< all members
+
+    // by place; those without a member are 0
+    JointVector commanded{};  ///< where the active command, else the last one, leads
+    JointVector set_position{}, set_velocity{}, set_acceleration{};
+    JointVector actual_position{}, actual_velocity{};
+    bool online = false;  ///< the actual values of all members are fresh enough
+
+    // along the path
+    double path_velocity = 0, path_acceleration = 0;
+    PathLimiter limiter = PathLimiter::none;
+    std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
+
+    // of the active command
+    GroupCommandKind active_kind = GroupCommandKind::none;
+    bool active_in_target = false;  ///< never: no group command goes on at its target
+    CommandId active = 0;
+    Duration elapsed{};    ///< since it became active
+    Duration remaining{};  ///< as planned now; 0 where nobody can say
+    double remaining_distance = 0, progress = 0;
+
+    CommandId lock = 0;  ///< the MC_GroupStop that holds the group
+    CommandId interrupting = 0, disabling = 0;
+    std::uint8_t queued_count = 0;
+    std::array<CommandId, most_waiting> queued{};
+    struct Finished {
+        CommandId id = 0;
+        Outcome outcome = Outcome::done;
+        ErrorId error = ErrorId::none;
+    };
+    std::array<Finished, 32> ledger{};  ///< ring; newest at (ledger_next - 1)
+    std::uint8_t ledger_next = 0;
+    CommandId last_id = 0;
+
+    Override override_factors;
+    PathDynamics default_dynamics, reference_dynamics;
+
+    [[nodiscard]] constexpr bool has(std::size_t place) const noexcept { return place < most_members && members[place].valid(); }
+
+    /// Bounded (a few dozen compares).
+    [[nodiscard]] constexpr CommandStatus status(CommandId id, ErrorId* error_out = nullptr) const noexcept {
+        if (id == 0) return CommandStatus::unknown;
+        if (id == active) return interrupted || interrupting != 0 ? CommandStatus::queued : CommandStatus::active;  // G-066
+        if (id == interrupting || id == disabling) return CommandStatus::active;
+        for (std::uint8_t i = 0; i < queued_count; ++i)
+            if (queued[i] == id) return CommandStatus::queued;
+        for (const auto& entry : ledger) {
+            if (entry.id != id) continue;
+            if (error_out) *error_out = entry.error;
+            switch (entry.outcome) {
+                case Outcome::done: return CommandStatus::done;
+                case Outcome::aborted: return CommandStatus::aborted;
+                case Outcome::error: return CommandStatus::error;
+            }
+        }
+        return CommandStatus::unknown;
+    }
+};
+static_assert(std::is_trivially_copyable_v<GroupView>);
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,438 @@
+// A group moves its axes: straight lines, the queue, halts and stops, override, interruption. On fake drives, 1 ms a cycle.
+
+#include <gtest/gtest.h>
+
+#include "tests/axes/group/group_rig.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+using enum GroupState;
+
+// G-013, G-022, G-033, G-045 of one move. The way is 50 u (30, 40 in the axes) at 50 u/s: 30 and 40 u/s.
+TEST(GroupMotion, ALineInTheAxesIsStraightAndAllMembersAreSynchronized) {
+    GroupRig rig(3);
+    rig.enable();
+    rig.run(2);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+
+    const auto from = rig.path.size();
+    const auto move = rig.give(line({30, 40, 0}, 50));
+    ASSERT_EQ(move.error, ErrorId::none);
+    EXPECT_EQ(rig.view().state, GroupMoving);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rig.axis(i).state, AxisState::SynchronizedMotion) << "the idle one too, " << i;
+    rig.run(500);
+    EXPECT_NEAR(rig.view().set_velocity[0], 30, 1e-9);
+    EXPECT_NEAR(rig.view().set_velocity[1], 40, 1e-9);
+    EXPECT_NEAR(rig.view().path_velocity, 50, 1e-9);
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 2000));
+    EXPECT_EQ(rig.axis(0).set_position, 30);
+    EXPECT_EQ(rig.axis(1).set_position, 40);
+    EXPECT_EQ(rig.axis(2).set_position, 0);
+    EXPECT_EQ(rig.view().state, GroupMoving) << "Standby comes one cycle after the last set-point (G-012)";
+    rig.step();
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rig.axis(i).state, AxisState::Standstill) << i;
+    EXPECT_LE(rig.deviation({0, 0, 0}, {30, 40, 0}, from), 1e-9 * 50);
+}
+
+// O-3 of our oracles: a line of one axis is what the axis would do by itself, to the last bit and in the same cycles.
+TEST(GroupMotion, ALineOfOneAxisIsTheAxisOwnMove) {
+    GroupRig rig(1), alone(1);
+    rig.enable();
+    rig.run(2);
+    alone.run(2);
+    const auto move = rig.give(line({37.5}, 60));
+    ASSERT_EQ(move.error, ErrorId::none);
+    alone.step([&] {
+        EXPECT_EQ(alone.axes[0].submit({.kind = CommandKind::move_absolute, .position = 37.5, .velocity = 60}, Owner::program).error,
+                  ErrorId::none);
+    });
+    for (int i = 0; i < 1200; ++i) {
+        ASSERT_EQ(rig.axis(0).set_position, alone.axis(0).set_position) << i;
+        ASSERT_EQ(rig.axis(0).set_velocity, alone.axis(0).set_velocity) << i;
+        rig.step();
+        alone.step();
+    }
+    EXPECT_EQ(rig.axis(0).set_position, 37.5);
+}
+
+// G-030, G-034: limits of the axes along the way. y may go 20 u/s: a way of 3:4 goes 25 u/s, and y's acceleration of 400 leaves 500 on the path.
+TEST(GroupMotion, TheSlowestMemberHoldsTheWayDown) {
+    GroupRig rig({group_axis("x"), group_axis("y", {.velocity = 20, .acceleration = 400, .deceleration = 400, .jerk = 8000})});
+    rig.enable();
+    ASSERT_EQ(rig.give(line({30, 40}, 1000)).error, ErrorId::none);
+    double fastest = 0, hardest = 0;
+    for (int i = 0; i < 3000; ++i) {
+        rig.step();
+        fastest = std::max(fastest, rig.view().path_velocity);
+        hardest = std::max(hardest, rig.view().path_acceleration);
+        if (i == 400) {
+            EXPECT_EQ(rig.view().limiter, PathLimiter::axis);
+            EXPECT_EQ(rig.view().limiting_place, 1);
+        }
+    }
+    EXPECT_NEAR(fastest, 25, 1e-9);
+    EXPECT_LE(hardest, 500 * (1 + 1e-9));
+    EXPECT_GE(hardest, 450);  // sqrt(25 * 10000) = 500 would be reached just so with y's jerk of 8000 / 0.8
+    EXPECT_EQ(rig.axis(1).set_position, 40);
+}
+
+// G-047: the set-point stands at P1, exactly; the next one starts in the following cycle. G-036: a buffered distance counts from the end before.
+TEST(GroupMotion, BufferedMovesMeetAtTheirEnds) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto first = rig.give(line({20, 10}, 80));
+    const auto second = rig.give(line_by({-5, 30}, 80, mcBuffered));
+    const auto third = rig.give(line({0, 0}, 80, mcBlendingHigh));  // v2.0 lets it act as buffered
+    ASSERT_EQ(third.error, ErrorId::none);
+    EXPECT_EQ(rig.status(second.id), CommandStatus::queued);
+    ASSERT_TRUE(rig.until([&] { return rig.status(first.id) == CommandStatus::done; }, 3000));
+    EXPECT_EQ(rig.point()[0], 20);
+    EXPECT_EQ(rig.point()[1], 10);
+    rig.step();
+    EXPECT_EQ(rig.status(second.id), CommandStatus::active) << "G-061: one cycle later";
+    EXPECT_NE(rig.point()[1], 10);
+    ASSERT_TRUE(rig.until([&] { return rig.status(second.id) == CommandStatus::done; }, 3000));
+    EXPECT_NEAR(rig.point()[0], 15, 1e-12);
+    EXPECT_NEAR(rig.point()[1], 40, 1e-12);
+    ASSERT_TRUE(rig.until([&] { return rig.status(third.id) == CommandStatus::done; }, 3000));
+    EXPECT_EQ(rig.point()[0], 0);
+}
+
+// G-045: nothing to do is Done in its turn, and what waits behind it begins in the same cycle.
+TEST(GroupMotion, AMoveOfNoLengthIsDoneInItsTurn) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto nothing = rig.give(line({0, 0}, 10));
+    EXPECT_EQ(rig.status(nothing.id), CommandStatus::done);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+}
+
+// G-046: no velocity step; the old way is braked on, then the new one goes from there.
+TEST(GroupMotion, AnAbortingMoveBrakesOnTheOldWayFirst) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto begun = rig.path.size();
+    const auto first = rig.give(line({100, 0}, 80));
+    const auto behind = rig.give(line({0, 0}, 80, mcBuffered));
+    rig.run(300);
+    const auto second = rig.give(line({0, 50}, 80));
+    EXPECT_EQ(rig.status(first.id), CommandStatus::aborted);
+    EXPECT_EQ(rig.status(behind.id), CommandStatus::aborted) << "U-05: waiting ones too";
+    EXPECT_EQ(rig.status(second.id), CommandStatus::active);
+    ASSERT_TRUE(rig.until([&] { return rig.view().set_velocity[1] != 0; }, 1000));
+    EXPECT_LE(rig.deviation({0, 0}, {100, 0}, begun), 1e-2) << "but for the first cycle of the new way";
+    const JointVector turn{rig.path[rig.path.size() - 2]};
+    EXPECT_GT(turn[0], 10);
+    const auto from = rig.path.size() - 1;
+    ASSERT_TRUE(rig.until([&] { return rig.status(second.id) == CommandStatus::done; }, 3000));
+    EXPECT_LE(rig.deviation(turn, {0, 50}, from), 1e-9 * 100);
+    EXPECT_EQ(rig.point()[1], 50);
+}
+
+// G-063, G-064, G-018: on the way, Stopping until Execute falls; nobody gets in.
+TEST(GroupMotion, AStopStaysOnTheWayAndLocksTheGroup) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto from = rig.path.size();
+    const auto move = rig.give(line({60, 80}, 100));
+    rig.run(400);
+    EXPECT_NEAR(rig.view().path_velocity, 100, 1e-9);
+    const auto stop = rig.give(simply(GroupCommandKind::stop, {.deceleration = 200}));
+    EXPECT_EQ(rig.view().state, GroupStopping);
+    EXPECT_EQ(rig.status(move.id), CommandStatus::aborted);
+    EXPECT_EQ(rig.submit(line({0, 0}, 10)).error, ErrorId::state_forbids);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::halt)).error, ErrorId::state_forbids);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::interrupt)).error, ErrorId::state_forbids);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::stop)).error, ErrorId::state_forbids);
+    EXPECT_EQ(rig.set(EnableGroup{}), ErrorId::state_forbids);
+    EXPECT_EQ(rig.set(AddMember{{1}, 3}), ErrorId::state_forbids);
+    rig.run(100);
+    // 100 u/s with 200 u/s2: longer than 0.5 s.
+    EXPECT_GT(rig.view().path_velocity, 50);
+    ASSERT_TRUE(rig.until([&] { return rig.status(stop.id) == CommandStatus::done; }, 1000));
+    EXPECT_EQ(rig.view().path_velocity, 0);
+    EXPECT_EQ(rig.view().state, GroupStopping);
+    EXPECT_EQ(rig.axes[0].submit({.kind = CommandKind::move_absolute, .position = 0, .velocity = 1}, Owner::program).error,
+              ErrorId::axis_grouped);
+    rig.run(50);
+    EXPECT_EQ(rig.view().state, GroupStopping);
+    rig.groups.release_stop(GroupRig::ref, stop.id, Owner::program);
+    rig.step();
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    EXPECT_LE(rig.deviation({0, 0}, {60, 80}, from), 1e-9 * 100);
+}
+
+// A stop that is too soft for what is left goes on to the end of the way, never beyond it.
+TEST(GroupMotion, AStopNeverPassesTheEndOfTheWay) {
+    GroupRig rig(2);
+    rig.enable();
+    ASSERT_EQ(rig.give(line({30, 40}, 100)).error, ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.view().remaining_distance < 8; }, 2000));
+    const auto stop = rig.give(simply(GroupCommandKind::stop, {.deceleration = 1}));
+    double furthest = 0;
+    for (int i = 0; i < 2000; ++i) {
+        rig.step();
+        furthest = std::max(furthest, rig.point()[0]);
+    }
+    EXPECT_EQ(rig.status(stop.id), CommandStatus::done);
+    EXPECT_LE(furthest, 30);
+}
+
+// G-018, G-065: GroupMoving until it stands; a command that comes meanwhile takes over.
+TEST(GroupMotion, AHaltKeepsGroupMovingUntilItStands) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto from = rig.path.size();
+    ASSERT_EQ(rig.give(line({60, 80}, 100)).error, ErrorId::none);
+    rig.run(300);
+    const auto halt = rig.give(simply(GroupCommandKind::halt));
+    EXPECT_EQ(rig.view().state, GroupMoving);
+    ASSERT_TRUE(rig.until([&] { return rig.status(halt.id) == CommandStatus::done; }, 1000));
+    EXPECT_EQ(rig.view().path_velocity, 0);
+    rig.step();
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    EXPECT_LE(rig.deviation({0, 0}, {60, 80}, from), 1e-9 * 100);
+    const auto nothing = rig.give(simply(GroupCommandKind::halt));
+    EXPECT_EQ(rig.status(nothing.id), CommandStatus::done);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+}
+
+/// Where a run was, by the length of its way: the same whatever its speed was (G-071, O-4).
+TEST(GroupMotion, OverrideNeverChangesTheWay) {
+    for (const double factor : {0.03, 0.37, 1.0}) {
+        GroupRig rig(2);
+        rig.enable();
+        const auto from = rig.path.size();
+        ASSERT_EQ(rig.set(Override{factor, 1, 1}), ErrorId::none);
+        const auto move = rig.give(line({3, 4}, 10));
+        rig.run(100);
+        ASSERT_EQ(rig.set(Override{1, 0.5, 1}), ErrorId::none);
+        rig.run(50);
+        ASSERT_EQ(rig.set(Override{0.5, 1, 0.2}), ErrorId::none);
+        ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 20000));
+        EXPECT_LE(rig.deviation({0, 0}, {3, 4}, from), 1e-9 * 5) << factor;
+        EXPECT_EQ(rig.point()[0], 3);
+        for (std::size_t n = from + 1; n < rig.path.size(); ++n) EXPECT_GE(rig.path[n][0], rig.path[n - 1][0]) << "it never goes back";
+    }
+}
+
+// G-070: 0 halts on the way, the state stays; factors beyond their range change nothing.
+TEST(GroupMotion, AnOverrideOfZeroHoldsOnTheWay) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto move = rig.give(line({60, 80}, 100));
+    rig.run(300);
+    EXPECT_EQ(rig.set(Override{-0.1, 1, 1}), ErrorId::invalid_override);
+    EXPECT_EQ(rig.set(Override{1.1, 1, 1}), ErrorId::invalid_override);
+    EXPECT_EQ(rig.set(Override{1, 0, 1}), ErrorId::invalid_override);
+    EXPECT_EQ(rig.set(Override{1, 1, 0}), ErrorId::invalid_override);
+    EXPECT_EQ(rig.set(Override{0, 1, 1}), ErrorId::none);
+    rig.run(500);
+    EXPECT_EQ(rig.view().path_velocity, 0);
+    EXPECT_EQ(rig.view().state, GroupMoving);
+    EXPECT_EQ(rig.status(move.id), CommandStatus::active);
+    const double held = rig.point()[0];
+    EXPECT_LT(held, 60);
+    EXPECT_EQ(rig.set(Override{0.5, 1, 1}), ErrorId::none);
+    rig.run(300);
+    EXPECT_NEAR(rig.view().path_velocity, 50, 1e-9);
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000));
+    EXPECT_EQ(rig.point()[0], 60);
+    // G-009, G-070: kept over disabling.
+    rig.step();
+    ASSERT_EQ(rig.give(simply(GroupCommandKind::disable)).error, ErrorId::none);
+    rig.enable();
+    EXPECT_EQ(rig.view().override_factors, (Override{0.5, 1, 1}));
+}
+
+// G-071: less acceleration than the rest of the way needs waits; on a way there is no coming back.
+TEST(GroupMotion, AFactorThatWouldPassTheEndWaits) {
+    GroupRig rig(1);
+    rig.enable();
+    const auto move = rig.give(line({50}, 100));
+    ASSERT_TRUE(rig.until([&] { return rig.view().path_acceleration < -500; }, 2000));  // braking at the end
+    ASSERT_EQ(rig.set(Override{1, 0.05, 1}), ErrorId::none);
+    double furthest = 0;
+    for (int i = 0; i < 1000; ++i) {
+        rig.step();
+        furthest = std::max(furthest, rig.point()[0]);
+    }
+    EXPECT_EQ(rig.status(move.id), CommandStatus::done);
+    EXPECT_EQ(furthest, 50);
+}
+
+// G-020: Done not earlier than Duration; the group keeps its axes meanwhile.
+TEST(GroupMotion, AWaitHasItsPlaceBetweenMoves) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto first = rig.give(line({1, 1}, 50));
+    GroupCommand pause{.kind = GroupCommandKind::wait, .buffer_mode = mcBuffered, .duration = 50500us};
+    const auto wait = rig.give(pause);
+    const auto last = rig.give(line({0, 0}, 50, mcBuffered));
+    ASSERT_TRUE(rig.until([&] { return rig.status(first.id) == CommandStatus::done; }, 2000));
+    const auto since = rig.path.size();
+    ASSERT_TRUE(rig.until([&] { return rig.status(wait.id) == CommandStatus::done; }, 2000));
+    EXPECT_EQ(rig.path.size() - since, 51u) << "50.5 ms are over at the end of the 51st cycle";
+    EXPECT_EQ(rig.view().state, GroupMoving);
+    EXPECT_EQ(rig.point()[0], 1);
+    ASSERT_TRUE(rig.until([&] { return rig.status(last.id) == CommandStatus::done; }, 2000));
+}
+
+// G-066, G-067, G-069, O-4.
+TEST(GroupMotion, AnInterruptedWayGoesOnFromWhereItStopped) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto from = rig.path.size();
+    const auto move = rig.give(line({60, 80}, 100));
+    const auto next = rig.give(line({60, 0}, 100, mcBuffered));
+    rig.run(300);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::nothing_interrupted);
+    const auto interrupt = rig.give(simply(GroupCommandKind::interrupt));
+    EXPECT_EQ(rig.view().state, GroupMoving) << "G-018";
+    EXPECT_EQ(rig.status(move.id), CommandStatus::queued) << "Busy without Active";
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::interrupt)).error, ErrorId::state_forbids);
+    ASSERT_TRUE(rig.until([&] { return rig.status(interrupt.id) == CommandStatus::done; }, 1000));
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    EXPECT_TRUE(rig.view().interrupted);
+    EXPECT_EQ(rig.axis(0).state, AxisState::Standstill);
+    EXPECT_EQ(rig.status(next.id), CommandStatus::queued);
+    const auto place = rig.point();
+    rig.run(100);
+
+    // Away and back by hand.
+    ASSERT_EQ(rig.axes[0].submit({.kind = CommandKind::move_relative, .position = -1, .velocity = 20}, Owner::program).error,
+              ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.axis(0).state == AxisState::Standstill && rig.axis(0).set_position < place[0]; }, 1000));
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::not_at_interruption);
+    ASSERT_EQ(rig.axes[0].submit({.kind = CommandKind::move_absolute, .position = place[0], .velocity = 20}, Owner::program).error,
+              ErrorId::none);
+    rig.step();
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::not_at_interruption);
+    ASSERT_TRUE(rig.until([&] { return rig.axis(0).state == AxisState::Standstill; }, 1000));
+    const auto back = rig.path.size();
+
+    const auto resume = rig.give(simply(GroupCommandKind::resume));
+    ASSERT_EQ(resume.error, ErrorId::none);
+    EXPECT_EQ(rig.view().state, GroupMoving);
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000));
+    EXPECT_LE(rig.deviation({0, 0}, {60, 80}, back), 1e-9 * 100);
+    EXPECT_LE(std::abs(rig.point()[1] - 80), 0);
+    (void)from;
+    ASSERT_TRUE(rig.until([&] { return rig.status(next.id) == CommandStatus::done; }, 3000));
+}
+
+// G-069: a new aborting command ends what was interrupted; a buffered one waits behind it.
+TEST(GroupMotion, ANewMotionEndsAnInterruption) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto move = rig.give(line({60, 80}, 100));
+    rig.run(300);
+    ASSERT_EQ(rig.give(simply(GroupCommandKind::interrupt)).error, ErrorId::none);
+    rig.run(500);
+    const auto waits = rig.give(line({1, 1}, 100, mcBuffered));
+    rig.run(100);
+    EXPECT_EQ(rig.status(waits.id), CommandStatus::queued);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    const auto other = rig.give(line({0, 0}, 100));
+    EXPECT_EQ(rig.status(move.id), CommandStatus::aborted);
+    EXPECT_EQ(rig.status(waits.id), CommandStatus::aborted);
+    EXPECT_FALSE(rig.view().interrupted);
+    ASSERT_TRUE(rig.until([&] { return rig.status(other.id) == CommandStatus::done; }, 3000));
+}
+
+// G-006: MCS on the identity is ACS; what the group has no kinematics for is refused.
+TEST(GroupMotion, FramesNeedAKinematics) {
+    GroupRig plain(3), cartesian(3, GroupKinematics::identity), wide(4, GroupKinematics::identity);
+    for (auto* rig : {&plain, &cartesian, &wide}) rig->enable();
+    auto in_machine = line({3, 4, 5}, 10);
+    in_machine.frame = mcMCS;
+    EXPECT_EQ(plain.submit(in_machine).error, ErrorId::no_kinematics);
+    EXPECT_EQ(wide.submit(in_machine).error, ErrorId::no_kinematics) << "a fourth axis has no place in X, Y, Z";
+    auto in_product = in_machine;
+    in_product.frame = mcPCS;
+    EXPECT_EQ(cartesian.submit(in_product).error, ErrorId::not_supported);
+    auto turned = in_machine;
+    turned.target[4] = 0.1;
+    EXPECT_EQ(cartesian.submit(turned).error, ErrorId::invalid_position);
+    const auto from = cartesian.path.size();
+    const auto move = cartesian.give(in_machine);
+    ASSERT_EQ(move.error, ErrorId::none);
+    ASSERT_TRUE(cartesian.until([&] { return cartesian.status(move.id) == CommandStatus::done; }, 5000));
+    EXPECT_LE(cartesian.deviation({0, 0, 0}, {3, 4, 5}, from), 1e-9);
+    EXPECT_EQ(cartesian.point()[2], 5);
+}
+
+// G-025, G-026: bounded, never a silent drop.
+TEST(GroupMotion, AFullQueueRefusesTheNewOne) {
+    GroupRig rig(1);
+    rig.enable();
+    ASSERT_EQ(rig.give(line({1}, 1)).id, 1u);
+    for (std::size_t i = 0; i < GroupView::most_waiting; ++i) EXPECT_EQ(rig.submit(line_by({0.1}, 1, mcBuffered)).error, ErrorId::none);
+    EXPECT_EQ(rig.submit(line_by({0.1}, 1, mcBuffered)).error, ErrorId::queue_full);
+    EXPECT_EQ(rig.view().queued_count, 16);
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 20000));
+    EXPECT_NEAR(rig.point()[0], 2.6, 1e-9) << "none was lost";
+}
+
+// G-044, G-024: both ends inside is the whole line inside; a target beyond moves nothing, and a buffered relative one ends with its own error.
+TEST(GroupMotion, SoftwareLimitsOfTheAxesHoldOfTheWholeWay) {
+    auto limited = group_axis("x");
+    limited.limits.position_max = 10;
+    limited.limits.position_min = -10;
+    limited.homing.kind = HomingKind::set_here;
+    GroupRig rig({limited, group_axis("y")});
+    ASSERT_EQ(rig.axes[0].submit({.kind = CommandKind::home, .position = 0}, Owner::program).error, ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.axis(0).homed && rig.axis(0).state == AxisState::Standstill; }, 100));
+    rig.enable();
+    EXPECT_EQ(rig.submit(line({10.001, 0}, 10)).error, ErrorId::beyond_software_limit);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    const auto there = rig.give(line({10, 5}, 50));
+    const auto beyond = rig.give(line_by({1, 0}, 50, mcBuffered));
+    const auto back = rig.give(line({0, 0}, 50, mcBuffered));
+    ASSERT_TRUE(rig.until([&] { return rig.status(back.id) == CommandStatus::done; }, 5000));
+    EXPECT_EQ(rig.status(there.id), CommandStatus::done);
+    EXPECT_EQ(rig.status(beyond.id), CommandStatus::error);
+    EXPECT_EQ(rig.error_of(beyond.id), ErrorId::beyond_software_limit);
+}
+
+TEST(GroupMotion, NumbersThatAreNoneAreRefused) {
+    GroupRig rig(2);
+    rig.enable();
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(rig.submit(line({none, 0}, 10)).error, ErrorId::invalid_position);
+    EXPECT_EQ(rig.submit(line({1, 0}, none)).error, ErrorId::invalid_velocity);
+    auto jerky = line({1, 0}, 1);
+    jerky.dynamics.jerk = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(rig.submit(jerky).error, ErrorId::invalid_dynamics);
+    auto curved = line({1, 0}, 1);
+    curved.transition = mcTMCornerDistance;
+    EXPECT_EQ(rig.submit(curved).error, ErrorId::not_supported);
+    GroupCommand back_in_time{.kind = GroupCommandKind::wait, .duration = -1ms};
+    EXPECT_EQ(rig.submit(back_in_time).error, ErrorId::invalid_parameter);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    EXPECT_EQ(rig.view().last_id, 0u);
+}
+
+// G-030: 0 and less are the group's default dynamics, and without them what the axes' limits leave: 100 u/s along one axis.
+TEST(GroupMotion, DynamicsThatAreNotSaidAreTheGroups) {
+    GroupRig rig(1);
+    rig.enable();
+    ASSERT_EQ(rig.give(line({100}, -1)).error, ErrorId::none);
+    double fastest = 0;
+    for (int i = 0; i < 2000; ++i) {
+        rig.step();
+        fastest = std::max(fastest, rig.view().path_velocity);
+    }
+    EXPECT_NEAR(fastest, 100, 1e-9);
+    ASSERT_EQ(rig.set(WriteDynamics{WriteDynamics::Which::default_dynamics,
+                                    {.velocity = 30, .acceleration = -1, .deceleration = -1, .jerk = -1}}),
+              ErrorId::none);
+    ASSERT_EQ(rig.give(line({0}, 0)).error, ErrorId::none);
+    rig.run(500);
+    EXPECT_NEAR(rig.view().path_velocity, 30, 1e-9);
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
