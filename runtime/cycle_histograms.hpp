@@ -34,6 +34,7 @@ struct CycleHistograms {
 struct MachineTimes {
     const CycleHistograms* cycle = nullptr;               ///< nullptr: there is no cycle
     const std::vector<SharedHistogram>* tasks = nullptr;  ///< runs, by MachineLayout::tasks
+    const std::vector<SharedHistogram>* task_lateness = nullptr;  ///< from release to run, likewise
 };
 
 }  // namespace taktwerk::runtime
