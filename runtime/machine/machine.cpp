@@ -144,7 +144,7 @@ SignalRing& Machine::signals() noexcept { return impl_->rows.ring(); }
 const SignalRing& Machine::signals() const noexcept { return impl_->rows.ring(); }
 const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }
 void Machine::reset_step_statistics() noexcept { impl_->steps.reset(); }
-MachineTimes Machine::times() const noexcept { 
+MachineTimes Machine::times() const noexcept {
     const auto& tasks = impl_->programs.times();
     return {&impl_->times, &tasks.runs(), &tasks.lateness()};
 }

@@ -75,7 +75,12 @@ void ProgramRunner::build_tasks() {
             {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
                                         body_.tables, values_.count_of(i), std::move(kept)),
-             i, TaskWatch{task.config, body_.config.cycle}, true, {}, std::move(shows), std::move(keeps)});
+             i,
+             TaskWatch{task.config, body_.config.cycle},
+             true,
+             {},
+             std::move(shows),
+             std::move(keeps)});
     }
 }
 

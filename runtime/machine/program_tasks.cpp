@@ -148,7 +148,8 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
     const auto index = static_cast<std::uint16_t>(p);
     const auto& program = host_.programs()[p];
     const auto& record = programs_[p];
-    if (record.state == ProgramState::fault && !record.stopped_by.task()) body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
+    if (record.state == ProgramState::fault && !record.stopped_by.task())
+        body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
     auto undeclared = record.undeclared;
     for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
         const auto& text = program.alarm_texts[n];
@@ -182,8 +183,7 @@ void ProgramRunner::raise_alarms_of_task(const SlowPlace& slow) noexcept {
     if (program.stopped_by.task() != slow.place || (program.state != ProgramState::fault && slow.finished)) return;
     if (program.stopped_by.verdict() == TaskVerdict::late)
         body_.raise(MachineAlarm::task_late, AlarmSource::task, place, slow.taken, task.overruns_allowed);
-    else
-        body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
+    else body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
 }
 
 void ProgramRunner::raise_alarms() noexcept {

@@ -34,8 +34,7 @@ inline void record_task_times(Recorder& recorder, Instant at, const TaskTimesRec
     inbox_record::Bytes<58> bytes;
     bytes.put(record.task);
     bytes.put(record.overruns);
-    for (const auto time :
-         {record.run.last, record.run.minimum, record.run.maximum, record.run.mean, record.lateness, record.lateness_max})
+    for (const auto time : {record.run.last, record.run.minimum, record.run.maximum, record.run.mean, record.lateness, record.lateness_max})
         bytes.put(static_cast<std::int64_t>(time.count()));
     recorder.append(task_times_channel, at, bytes.all());
 }

@@ -19,7 +19,8 @@ constexpr Duration watch_period = std::chrono::milliseconds{20};
 
 }  // namespace
 
-RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machine), world_(world), end_watch_(machine), tasks_(machine, clock_) {
+RealtimeRunner::RealtimeRunner(Machine& machine, World* world)
+    : machine_(machine), world_(world), end_watch_(machine), tasks_(machine, clock_) {
     const auto& wanted = machine.config().realtime;
     request_.priority = wanted.priority > 0 ? std::optional<int>{wanted.priority} : std::nullopt;
     request_.cpus = wanted.cpus;

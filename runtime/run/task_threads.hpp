@@ -37,11 +37,11 @@ private:
         std::size_t task = 0;  ///< of Machine::run_slow_task()
         int priority = 0;      ///< 0: an ordinary thread
         Duration at_priority = longest_at_priority;
-        Result<void> granted{};           ///< written before `ready`
-        std::atomic<int> number{0};       ///< of the kernel
-        std::atomic<bool> ready{false};   ///< it has begun
-        std::atomic<bool> taken{false};   ///< its priority was taken away
-        std::atomic<Instant> began{};     ///< of the run at work; Instant{}: none
+        Result<void> granted{};          ///< written before `ready`
+        std::atomic<int> number{0};      ///< of the kernel
+        std::atomic<bool> ready{false};  ///< it has begun
+        std::atomic<bool> taken{false};  ///< its priority was taken away
+        std::atomic<Instant> began{};    ///< of the run at work; Instant{}: none
     };
     void run(Place& place, const std::atomic<bool>& stop);
     void wait_for_release(const Place& place, const std::atomic<bool>& stop);

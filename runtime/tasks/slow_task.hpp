@@ -63,12 +63,12 @@ public:
     [[nodiscard]] std::span<Write> writes() noexcept { return given_.writes; }
     void set_write_count(std::size_t count) noexcept { given_.count = count; }
     /// What the next run is told of its task. Before release().
-    void tell(const TaskInfo& info) noexcept { info_ = info; }
+    void tell(const TaskInfo& info) noexcept { times_.told = info; }
     /// For a replay: released, not yet run.
-    void tell_again(const TaskTimesRecord& then) noexcept { then.tell(info_); }
+    void tell_again(const TaskTimesRecord& then) noexcept { then.tell(times_.told); }
     /// Only while finished(): the last run has asked what it was told.
-    [[nodiscard]] bool times_asked() const noexcept { return times_asked_; }
-    [[nodiscard]] const TaskInfo& info() const noexcept { return info_; }
+    [[nodiscard]] bool times_asked() const noexcept { return times_.asked; }
+    [[nodiscard]] const TaskInfo& info() const noexcept { return times_.told; }
     /// Latches everything and hands the task to its thread.
     void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
@@ -85,9 +85,9 @@ public:
     }
     /// How many runs have been applied.
     [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
-    [[nodiscard]] Duration last_run() const noexcept { return run_time_; }
+    [[nodiscard]] Duration last_run() const noexcept { return times_.run; }
     /// From its release to its first instruction.
-    [[nodiscard]] Duration last_lateness() const noexcept { return lateness_; }
+    [[nodiscard]] Duration last_lateness() const noexcept { return times_.lateness; }
     /// Only while finished().
     [[nodiscard]] bool threw() const noexcept { return threw_; }
     [[nodiscard]] const FaultText& fault() const noexcept { return fault_; }
@@ -103,7 +103,7 @@ public:
     /// True when there was something to do.
     bool run_if_released() noexcept;
     /// Scan time of the cycle that released the last run.
-    [[nodiscard]] Instant last_release() const noexcept { return last_release_; }
+    [[nodiscard]] Instant last_release() const noexcept { return times_.released; }
 
 private:
     ProgramHost::Task task_;
@@ -136,11 +136,13 @@ private:
     bool threw_ = false;
     FaultText fault_;
     TaskContext::Undeclared undeclared_;
-    TaskInfo info_;
-    bool times_asked_ = false;
-    Stopwatch since_release_;
-    Duration run_time_{}, lateness_{};
-    Instant last_release_{};
+    struct {
+        TaskInfo told;  // to the run
+        bool asked = false;
+        Stopwatch since_release;
+        Duration run{}, lateness{};
+        Instant released{};
+    } times_;
 };
 
 }  // namespace taktwerk::runtime

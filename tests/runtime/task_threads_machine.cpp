@@ -19,11 +19,11 @@ namespace {
 
 using axes::AxisState;
 
-std::atomic<bool> hangs{false};     ///< the slower task computes without an end
-std::atomic<int> task_thread{0};    ///< the kernel's number of its thread
-std::atomic<std::uint64_t> torn{0}; ///< something changed within a run
-std::atomic<std::uint64_t> seen{0}; ///< different images
-std::atomic<std::uint64_t> told{0}; ///< times that were not 0
+std::atomic<bool> hangs{false};      ///< the slower task computes without an end
+std::atomic<int> task_thread{0};     ///< the kernel's number of its thread
+std::atomic<std::uint64_t> torn{0};  ///< something changed within a run
+std::atomic<std::uint64_t> seen{0};  ///< different images
+std::atomic<std::uint64_t> told{0};  ///< times that were not 0
 
 /// Moves x from a slower task, which comes back only while `hangs` is FALSE. What it is told of its times is on the lamp, so that a replay that is
 /// told other ones shows it.
@@ -220,9 +220,8 @@ TEST(TaskThreads, AnEndlessLoopStopsItsProgramAloneAndTheRecordingIsTheSameAgain
     EXPECT_TRUE(replayed.identical()) << replayed.text();
     EXPECT_GT(replayed.cycles, 50u);
     // The control: the times are in it, and are what the lamp shows.
-    const auto times = std::ranges::find_if(recording.frames, [n = 0](const Recording::Frame& frame) mutable {
-        return frame.channel == task_times_channel && ++n == 20;
-    });
+    const auto times = std::ranges::find_if(
+        recording.frames, [n = 0](const Recording::Frame& frame) mutable { return frame.channel == task_times_channel && ++n == 20; });
     ASSERT_NE(times, recording.frames.end());
     recording.bytes[times->offset + 10] ^= std::byte{1};  // the last nanosecond of the last run
     EXPECT_FALSE(replay_all(config, recording).identical());
@@ -328,7 +327,8 @@ TEST(TaskThreads, WhoComputesTooLongLosesItsPriorityUntilItComesBack) {
     RealtimeRunner runner{machine, &world};
     const auto report = runner.start();
     ASSERT_TRUE(report.ok());
-    const auto item = std::ranges::find_if(report->items, [](const RealtimeItem& i) { return i.what.find("slower tasks") != std::string::npos; });
+    const auto item =
+        std::ranges::find_if(report->items, [](const RealtimeItem& i) { return i.what.find("slower tasks") != std::string::npos; });
     ASSERT_NE(item, report->items.end());
     EXPECT_EQ(item->what, "SCHED_FIFO for slower tasks: p.loop 18") << "below the cycle, and below the watch over it";
     if (!item->granted) {
