@@ -25,14 +25,7 @@ Error refusal(std::string code, std::string subject, int number, std::string rem
 }
 
 void note(RealtimeReport& report, std::string what, const Result<void>& result, std::string consequence) {
-    RealtimeItem item;
-    item.what = std::move(what);
-    item.granted = result.ok();
-    if (!item.granted) {
-        item.reason = result.error().remedy.empty() ? result.error().what : result.error().what + ". " + result.error().remedy;
-        item.consequence = std::move(consequence);
-    }
-    report.items.push_back(std::move(item));
+    report.items.push_back(realtime_item(std::move(what), result, std::move(consequence)));
 }
 
 /// Its own frame is the memory to touch; one write a page is enough.
@@ -43,6 +36,17 @@ void note(RealtimeReport& report, std::string what, const Result<void>& result, 
 }
 
 }  // namespace
+
+RealtimeItem realtime_item(std::string what, const Result<void>& result, std::string consequence) {
+    RealtimeItem item;
+    item.what = std::move(what);
+    item.granted = result.ok();
+    if (!item.granted) {
+        item.reason = result.error().remedy.empty() ? result.error().what : result.error().what + ". " + result.error().remedy;
+        item.consequence = std::move(consequence);
+    }
+    return item;
+}
 
 bool RealtimeReport::all_granted() const noexcept {
     return std::all_of(items.begin(), items.end(), [](const RealtimeItem& item) { return item.granted; });
@@ -90,6 +94,16 @@ Result<void> set_fifo_priority(int priority) {
     if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
         return refusal("realtime.priority", "", errno,
                        "Grant CAP_SYS_NICE or set `rtprio` in /etc/security/limits.conf (systemd: LimitRTPRIO=95)");
+    return {};
+}
+
+int this_thread_number() noexcept { return static_cast<int>(::gettid()); }
+
+Result<void> take_priority(int thread) {
+    const sched_param parameters{};
+    // The flag stays: only a privileged process may clear it.
+    if (::sched_setscheduler(thread, SCHED_OTHER | SCHED_RESET_ON_FORK, &parameters) != 0)
+        return refusal("realtime.priority", fmt::format("thread {}", thread), errno, "");
     return {};
 }
 

@@ -122,7 +122,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
 void Machine::Impl::reset_statistics() noexcept {
     body.statistics.lateness_max = body.statistics.compute_max = {};
     times.reset();
-    programs.reset_statistics();
+    programs.times().reset();
 }
 
 void Machine::Impl::wait_for_bus(const CycleTick& tick) noexcept {
@@ -155,7 +155,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     body.requests.speak_for(no_program, now);
     desk.renew_power();
     measuring.step();
-    programs.run_tasks();
+    programs.run_tasks(tick.missed);
     drives.serial().hold_watchdog_outputs();
     drives.hold_brake_outputs();
     done(Step::tasks);

@@ -39,12 +39,11 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
       retained_(host_.retained()),
       kept_by_slow_(host_.retained().size()),
       claims_(body.config.axes.size()),
-      objects_(body.config.programs.size(), body.bus.slave_count()) {
+      objects_(body.config.programs.size(), body.bus.slave_count()),
+      times_(host_.tasks().size()) {
     for (std::size_t p = 0; p < body.config.programs.size(); ++p)
         programs_.emplace_back(body.requests, claims_, static_cast<std::uint16_t>(p));
     build_tasks();
-    task_statistics_.resize(host_.tasks().size());
-    task_times_ = std::vector<SharedHistogram>(host_.tasks().size());
     for (const auto& variable : host_.variables()) variable_values_.push_back(ProgramHost::read(variable));
 }
 
@@ -76,7 +75,12 @@ void ProgramRunner::build_tasks() {
             {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
                                         body_.tables, values_.count_of(i), std::move(kept)),
-             i, TaskWatch{task.config, body_.config.cycle}, true, {}, std::move(shows), std::move(keeps)});
+             i,
+             TaskWatch{task.config, body_.config.cycle},
+             true,
+             {},
+             std::move(shows),
+             std::move(keeps)});
     }
 }
 
@@ -145,6 +149,7 @@ void ProgramRunner::take_answers() noexcept {
         if (slow.finished || !slow.task->finished()) continue;
         slow.finished = true;
         slow.watch.end(body_.cycles);
+        if (slow.task->times_asked()) record_times(slow.place, slow.task->info());
         if (recorder != nullptr) record_slow(*recorder, body_.now, static_cast<std::uint16_t>(i));
     }
     objects_.take_answers(body_.recorder, body_.now);
@@ -284,6 +289,14 @@ void ProgramRunner::call_hook(std::size_t p) {
 bool ProgramRunner::replay_hook(std::size_t program, bool stop) {
     if (program >= programs_.size() || !host_.programs()[program].instance) return false;
     run_hook(program, stop ? Handshake::stop_asked : Handshake::start_asked);
+    return true;
+}
+
+bool ProgramRunner::replay_times(const TaskTimesRecord& record) noexcept {
+    if (record.task >= host_.tasks().size()) return false;
+    for (auto& slow : slow_tasks_)
+        if (slow.place == record.task) return slow.task->tell_again(record), true;
+    times_.replay(record);
     return true;
 }
 

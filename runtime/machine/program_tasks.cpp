@@ -10,7 +10,7 @@
 
 namespace taktwerk::runtime {
 
-void ProgramRunner::run_base_task(BaseTask& base) noexcept {
+void ProgramRunner::run_base_task(BaseTask& base, std::uint32_t missed_ticks) noexcept {
     const auto& task = host_.tasks()[base.place];
     auto& program = host_.programs()[task.program];
     auto& record = programs_[task.program];
@@ -32,6 +32,8 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
     context.parameters = host_.parameters();
     context.alarms = program.alarms;
     context.first_scan = context.cycle == 0;
+    const auto info = times_.info(base.place, body_.config.cycle, missed_ticks);
+    context.task_info = &info;
     values_.apply(base.place);
     for (const auto& block : base.warm) block.type->warm_start(block.address, context.now);
     base.warm.clear();
@@ -47,19 +49,12 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
         failed(task.program, why);
     }
     pulse_task_.store(-1, std::memory_order_relaxed);
+    if (context.task_asked) record_times(base.place, info);
 }
 
-void ProgramRunner::book(std::size_t place, Duration run) noexcept {
-    auto& numbers = task_statistics_[place];
-    numbers.run = run;
-    numbers.run_max = std::max(numbers.run_max, run);
-    ++numbers.releases;
-    task_times_[place].record(run, body_.cycles + 1);  // of this cycle, which is not over
-}
-
-void ProgramRunner::reset_statistics() noexcept {
-    for (auto& numbers : task_statistics_) numbers.run_max = {};
-    for (auto& times : task_times_) times.reset();
+void ProgramRunner::record_times(std::size_t place, const TaskInfo& told) noexcept {
+    if (body_.recorder == nullptr || !body_.threads_beside) return;  // in virtual time it is 0
+    record_task_times(*body_.recorder, body_.now, TaskTimesRecord::of(static_cast<std::uint16_t>(place), told));
 }
 
 void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
@@ -72,10 +67,11 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     if (!task.due(body_.cycles)) return;
     if (!slow.finished) {
         if (!runs) return;  // there is no release to miss
-        ++task_statistics_[slow.place].overruns;
+        times_.overrun(slow.place);
         slow.watch.missed();
         return;
     }
+    const auto missed = slow.watch.overruns();
     slow.watch.in_time();
     if (!runs) {
         task.forget();
@@ -90,11 +86,12 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     auto& alarms = host_.programs()[p].alarms;
     auto& io = body_.io;
     task.apply(program.requests, io.outputs(), alarms);
-    book(slow.place, task.last_run());
+    times_.book(slow.place, task.last_run(), task.last_lateness(), body_.cycles + 1);  // of this cycle, which is not over
     task.set_write_count(values_.take(slow.place, task.writes()));
     CycleContext context;
     context.now = body_.now;
     context.period = body_.config.cycle;
+    task.tell(times_.info(slow.place, body_.config.cycle * static_cast<Duration::rep>(task.config().divisor), missed));
     slow.finished = false;
     slow.watch.begin(body_.cycles);
     task.release(context, body_.views, {io.inputs(), io.input_values()}, io.outputs(), host_.parameters(), alarms);
@@ -125,7 +122,7 @@ void ProgramRunner::write_values_at_rest() noexcept {
     }
 }
 
-void ProgramRunner::run_tasks() noexcept {
+void ProgramRunner::run_tasks(std::uint32_t missed_ticks) noexcept {
     take_handshakes();
     if (body_.emergency) values_.let_go_all();
     values_.end_leases(body_.now);
@@ -138,11 +135,11 @@ void ProgramRunner::run_tasks() noexcept {
     for (auto& base : base_tasks_) {
         if (!programs_[host_.tasks()[base.place].program].running()) continue;
         const Stopwatch watch;
-        run_base_task(base);
-        auto& numbers = task_statistics_[base.place];
-        book(base.place, Stopwatch{watch}.lap());
-        if (numbers.run > body_.config.cycle) ++numbers.overruns;
-        if (numbers.run > longest_base_task_.run) longest_base_task_ = {base.place, numbers.run};
+        run_base_task(base, missed_ticks);
+        const auto run = Stopwatch{watch}.lap();
+        times_.book(base.place, run, body_.statistics.lateness, body_.cycles + 1);
+        if (run > body_.config.cycle) times_.overrun(base.place);
+        if (run > longest_base_task_.run) longest_base_task_ = {base.place, run};
     }
 }
 
@@ -151,7 +148,8 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
     const auto index = static_cast<std::uint16_t>(p);
     const auto& program = host_.programs()[p];
     const auto& record = programs_[p];
-    if (record.state == ProgramState::fault && !record.stopped_by.task()) body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
+    if (record.state == ProgramState::fault && !record.stopped_by.task())
+        body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
     auto undeclared = record.undeclared;
     for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
         const auto& text = program.alarm_texts[n];
@@ -185,8 +183,7 @@ void ProgramRunner::raise_alarms_of_task(const SlowPlace& slow) noexcept {
     if (program.stopped_by.task() != slow.place || (program.state != ProgramState::fault && slow.finished)) return;
     if (program.stopped_by.verdict() == TaskVerdict::late)
         body_.raise(MachineAlarm::task_late, AlarmSource::task, place, slow.taken, task.overruns_allowed);
-    else
-        body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
+    else body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
 }
 
 void ProgramRunner::raise_alarms() noexcept {

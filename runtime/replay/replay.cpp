@@ -213,6 +213,7 @@ bool Replay::Impl::put(const RecordView& record) {
         case modbus_word_channel: return into(read_word(record.bytes));
         case disk_channel: return into(read_disk(record.bytes));
         case hook_channel: return into(read_hook(record.bytes));
+        case task_times_channel: return into(read_task_times(record.bytes));
         case slow_channel: return into(read_slow(record.bytes));
         default: return true;  // what the machine makes of it
     }

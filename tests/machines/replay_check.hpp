@@ -18,17 +18,17 @@ namespace taktwerk::runtime::testing {
 class RecordedInMemory {
 public:
     /// Before the machine's first cycle. `runner`: takes away after each cycle; nullptr: the caller does, by drain().
-    void watch(Machine& machine, VirtualRunner* runner, Instant start) {
+    void watch(Machine& machine, VirtualRunner* runner, Instant start, RecordedThreads threads = RecordedThreads::one) {
         config_ = machine.config();
         recording_ = {};
         full_ = false;
-        recording_.info = recording_info(config_, start, RecordedThreads::one);
+        recording_.info = recording_info(config_, start, threads);
         for (const auto& file : start_files(config_)) {
             const auto record = start_file_record(file);
             keep({start_file_channel, start, record});
         }
         recorder_.emplace(std::size_t{16} << 20, Recorder::Policy::drop_newest);
-        machine.record(*recorder_, RecordedThreads::one);
+        machine.record(*recorder_, threads);
         if (runner != nullptr) runner->drain = [this] { drain(); };
     }
     [[nodiscard]] bool watches() const { return recorder_.has_value(); }

@@ -2,8 +2,8 @@
 // runs it (tests/runtime/task_threads_machine.cpp has one that really does not).
 
 #include "runtime/alarms.hpp"
-#include "tests/runtime/test_machine.hpp"
 #include "runtime/tasks/task_watch.hpp"
+#include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -163,7 +163,8 @@ TEST_F(TaskReactions, TooManyMissedReleasesStopTheProgramByDefault) {
     EXPECT_EQ(cycles_until_ramp(100), 20);
     cycle();
     EXPECT_EQ(alarm_ids(), std::vector{id(MachineAlarm::task_late)}) << m().alarms();
-    EXPECT_NE(m().alarms().find("task p.panel: A task was not finished at its next release, 4 times in a row (allowed 3)"), std::string::npos)
+    EXPECT_NE(m().alarms().find("task p.panel: A task was not finished at its next release, 4 times in a row (allowed 3)"),
+              std::string::npos)
         << m().alarms();
     expect_x_and_lamp_are_off();
     expect_the_rest_is_unharmed();
@@ -250,6 +251,70 @@ TEST_F(TaskReactions, ItsProgramStartsAgainOnlyWhenTheTaskHasComeBack) {
     EXPECT_TRUE(m().until([&] { return m().axis(0).set_velocity == 60 && m().world.output("lamp"); }, 3s)) << m().alarms();
     EXPECT_EQ(variable(m(), "stops"), 1) << "its stop() ran when the task had come back";
     expect_the_rest_is_unharmed();
+}
+
+/// Notes what its tasks are told of themselves.
+class Asks final : public Program {
+public:
+    std::vector<TaskInfo> slow_told, base_told;
+    void declare(Declaration& d) override {
+        slow_told.reserve(10'000);
+        base_told.reserve(10'000);
+        newest = this;
+        d.task<&Asks::slow>("slow");
+        d.task<&Asks::base>("base");
+    }
+    void slow(TaskContext& ctx) { slow_told.push_back(ctx.task()); }
+    void base(TaskContext& ctx) { base_told.push_back(ctx.task()); }
+    static inline Asks* newest = nullptr;
+};
+
+// What is counted is the same everywhere; what is measured is 0, or a program that looks at it would do something else in each run.
+TEST_F(TaskReactions, InVirtualTimeATaskIsToldHowOftenItRanAndThatItTookNoTime) {
+    auto config = with_program(1, &entry_of<Asks>);
+    config.tasks[0].name = "base";
+    panel.name = "slow";
+    panel.overrun = OverrunReaction::count;
+    panel.watchdog = Duration{};
+    config.tasks.push_back(panel);
+    machine = std::make_unique<TestMachine>(config);
+    ASSERT_TRUE(m().up());
+    m().run(200ms);
+    auto& program = *Asks::newest;
+    ASSERT_GT(program.slow_told.size(), 40u);
+    for (std::size_t i = 0; i < program.slow_told.size(); ++i) {
+        EXPECT_EQ(program.slow_told[i].runs, i) << "this one has not ended";
+        EXPECT_EQ(program.slow_told[i].missed, 0u);
+    }
+    for (std::size_t i = 0; i < program.base_told.size(); ++i) EXPECT_EQ(program.base_told[i].runs, i);
+    EXPECT_EQ(program.slow_told.back().period, 4ms);
+    EXPECT_EQ(program.base_told.back().period, 1ms);
+
+    // To the cycle behind a release: five later ones find it at work, the first of them is in time.
+    const auto releases = m().state().tasks[0].releases;
+    ASSERT_TRUE(m().until([&] { return m().state().tasks[0].releases > releases; }, 100ms));
+    for (int i = 0; i < 20; ++i) {
+        m().clock.advance(1ms);
+        m().machine->cycle({m().clock.now(), m().clock.now(), 0});
+        m().machine->service(m().clock.now());
+    }
+    const auto starved = program.slow_told.size();
+    m().run(12ms);
+    ASSERT_GT(program.slow_told.size(), starved + 1);
+    EXPECT_EQ(program.slow_told[starved].missed, 0u) << "told at its release, before it was late";
+    EXPECT_EQ(program.slow_told[starved + 1].missed, 4u);
+    EXPECT_EQ(program.slow_told[starved + 2].missed, 0u);
+    EXPECT_EQ(m().state().tasks[0].overruns, 4u);
+    for (const auto* told : {&program.slow_told, &program.base_told})
+        for (const auto& info : *told) {
+            ASSERT_EQ(info.run.last, Duration{});
+            ASSERT_EQ(info.run.maximum, Duration{});
+            ASSERT_EQ(info.lateness_max, Duration{});
+        }
+    // The control: people are shown what it took.
+    EXPECT_GT(m().state().tasks[0].run_max, Duration{});
+    EXPECT_LE(m().state().tasks[0].run_min, m().state().tasks[0].run_mean());
+    EXPECT_LE(m().state().tasks[0].run_mean(), m().state().tasks[0].run_max);
 }
 
 TEST_F(TaskReactions, WhatIsStoppedAsksNoDriveForObjectsAnyMore) {
