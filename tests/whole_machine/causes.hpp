@@ -16,10 +16,13 @@ enum class Where : std::uint8_t {
 };
 
 struct Consequence {
-    std::string_view alarm;
+    std::string_view alarm;  ///< one that ends with _: each that begins so
     Where where = Where::anywhere;
 };
 
+[[nodiscard]] inline bool is(const Consequence& consequence, std::string_view alarm) noexcept {
+    return consequence.alarm.ends_with('_') ? alarm.starts_with(consequence.alarm) : alarm == consequence.alarm;
+}
 [[nodiscard]] std::span<const Consequence> consequences(Trouble trouble) noexcept;
 [[nodiscard]] std::span<const Consequence> consequences(Deed deed) noexcept;
 

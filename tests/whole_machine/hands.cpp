@@ -79,6 +79,7 @@ void Hands::reset_all() {
     const auto programs = rig_.m.machine->layout().programs.size();
     rig_.mode(runtime::Mode::manual);
     rig_.cycle();
+    (void)rig_.submit(power, 0xFFFF, false);  // who pushes against a stop has to let go first
     (void)rig_.submit(release_forces);
     (void)rig_.submit(override_velocity, 0xFFFF, false, 1);
     for (std::size_t i = 0; i < programs; ++i) (void)rig_.submit(program_reset, static_cast<std::uint16_t>(i));

@@ -130,6 +130,7 @@ bool recover(Rig& rig, Hands& hands) {
 
 bool end_in_order(Rig& rig) {
     const auto longest = rig.m.machine->longest_stop();
+    (void)rig.begins(Deed::end);
     rig.m.machine->request_shutdown();
     if (!rig.m.runner->run_until([&] { return rig.m.machine->phase() == runtime::MachinePhase::stopped; }, longest + 1s)) {
         rig.problem(fmt::format("it does not stop within {} ms", longest / 1ms));

@@ -39,13 +39,20 @@ void Rig::tell(std::string line) {
 }
 
 std::size_t Rig::begins(std::variant<Trouble, Deed> what, std::string at) {
+    while (!happenings_.empty() && happenings_.front().to && now() - *happenings_.front().to > aftermath) {
+        happenings_.pop_front();
+        ++forgotten_;
+    }
     happenings_.push_back({what, std::move(at), now(), {}});
-    if (std::holds_alternative<Trouble>(what)) tell(happenings_.back().text());
-    return happenings_.size() - 1;
+    if (const auto* trouble = std::get_if<Trouble>(&what)) {
+        tell(happenings_.back().text());
+        ++done[std::string(name(*trouble))];
+    }
+    return forgotten_ + happenings_.size() - 1;
 }
 
 void Rig::ended(std::size_t happening) {
-    auto& one = happenings_[happening];
+    auto& one = happenings_[happening - forgotten_];
     if (one.to) return;
     one.to = now();
     if (std::holds_alternative<Trouble>(one.what)) tell("over: " + one.text());
@@ -128,23 +135,19 @@ void Rig::look_at_answers() {
 }
 
 void Rig::look_at_alarms(const runtime::Snapshot& snapshot) {
+    still_.clear();
     for (std::size_t i = 0; i < snapshot.alarm_count; ++i) {
         const auto& alarm = snapshot.alarms[i];
-        const auto key = std::tuple{alarm.fact.id, alarm.fact.source, alarm.fact.index, alarm.since.time_since_epoch().count()};
-        if (!known_.insert(key).second) continue;
+        const Known key{alarm.fact.id, alarm.fact.source, alarm.fact.index, alarm.since.time_since_epoch().count()};
+        still_.push_back(key);
+        if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
         strongest = std::max(strongest, alarm.reaction);
         const auto words = m.machine->describe(alarm.fact);
         ++seen[words.name];
         tell(fmt::format("alarm {} of {}: {}", words.name, words.source, words.english));
-        if (!explained(words.name, alarm.fact) && std::getenv("COLLECT")) {
-            std::string r;
-            for (auto& h : happenings_) if (std::holds_alternative<Trouble>(h.what)) r += h.text() + (is_at(alarm.fact, h.at) ? "(here) " : "(away) ");
-            for (auto& h : happenings_) if (std::holds_alternative<Deed>(h.what) && now() - *h.to < 3s && r.find(h.text()) == std::string::npos) r += "+" + h.text() + (is_at(alarm.fact, h.at) ? "(here) " : "(away) ");
-            fmt::print("COLLECT {} <- {} [{}]\n", words.name, r, words.source);
-        } else
         if (!explained(words.name, alarm.fact)) problem(fmt::format("nobody knows why: {} of {}: {}", words.name, words.source, words.english));
     }
-    if (known_.size() > 4096) known_.erase(known_.begin());
+    known_.swap(still_);
 }
 
 bool Rig::is_at(const AlarmFact& fact, const std::string& at) const {
@@ -174,13 +177,20 @@ bool Rig::is_at(const AlarmFact& fact, const std::string& at) const {
     }
 }
 
+/// A drive that searches its reference at a limit switch and is stopped there meets that switch as one: its own alarm, whoever stopped it.
+bool Rig::stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact) {
+    if (alarm != "drive_fault" || fact.source != AlarmSource::axis) return false;
+    const auto& view = m.axis(fact.index);
+    return m.machine->config().axes[fact.index].axis.homing.kind == axes::HomingKind::drive && !view.homed &&
+           (view.negative_limit_switch || view.positive_limit_switch);
+}
+
 bool Rig::explained(std::string_view alarm, const AlarmFact& fact) {
-    while (first_recent_ < happenings_.size() && happenings_[first_recent_].to && now() - *happenings_[first_recent_].to > 60s) ++first_recent_;
-    for (std::size_t i = first_recent_; i < happenings_.size(); ++i) {
-        const auto& one = happenings_[i];
+    if (stopped_at_its_switch(alarm, fact)) return true;
+    for (const auto& one : happenings_) {
         if (one.to && now() - *one.to > aftermath) continue;
         for (const auto& consequence : std::visit([](auto what) { return consequences(what); }, one.what))
-            if (consequence.alarm == alarm && (consequence.where == Where::anywhere || is_at(fact, one.at))) return true;
+            if (is(consequence, alarm) && (consequence.where == Where::anywhere || is_at(fact, one.at))) return true;
     }
     return false;
 }

@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -89,6 +88,7 @@ public:
     [[nodiscard]] bool in_operation() const;  ///< bus in OP, every slave exchanged
     [[nodiscard]] bool any_in_error();
     [[nodiscard]] std::string standing();  ///< alarms, in words
+    [[nodiscard]] const Places& places() const { return places_; }
 
     PrivateDisk disk;
     runtime::testing::TestMachine m;
@@ -96,6 +96,7 @@ public:
     std::deque<std::string> log;                    ///< the newest of what was done and what came of it
     std::map<std::string, long, std::less<>> seen;  ///< alarms by their names
     Reaction strongest = Reaction::none;  ///< of all alarms since it was set
+    std::map<std::string, long, std::less<>> done;  ///< troubles by their names
     long commands = 0, answers = 0;
 
 private:
@@ -103,15 +104,17 @@ private:
     void look_at_alarms(const runtime::Snapshot& snapshot);
     void look_at_answers();
     [[nodiscard]] bool explained(std::string_view alarm, const AlarmFact& fact);
+    [[nodiscard]] bool stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact);
     [[nodiscard]] bool is_at(const AlarmFact& fact, const std::string& at) const;
     void tell(std::string line);
 
     std::optional<hmi::AlarmHistory> history_;
     std::unique_ptr<runtime::FlightRecorder> recorder_;
     Places places_;
-    std::vector<Happening> happenings_;
-    std::size_t first_recent_ = 0;
-    std::set<std::tuple<AlarmId, AlarmSource, std::uint16_t, std::int64_t>> known_;
+    std::deque<Happening> happenings_;
+    std::size_t forgotten_ = 0;  // happenings that are long over
+    using Known = std::tuple<AlarmId, AlarmSource, std::uint16_t, std::int64_t>;
+    std::vector<Known> known_, still_;  // alarms of the cycle before, and of this one
     std::map<std::uint64_t, std::uint64_t> unanswered_;  // by number: cycle in which it was given
     runtime::CommandAnswer last_answer_;
     std::uint64_t sequence_ = 0, cycles_ = 0;

@@ -79,6 +79,8 @@ void add_rogue(runtime::MachineConfig& config) {
     Rogue::axis = Rogue::output = "";
     for (const auto& binding : config.axes)
         if (Rogue::axis.empty() && !binding.encoder) Rogue::axis = binding.axis.name;
+    for (const auto& point : config.io)
+        if (point.direction == runtime::IoDirection::output && Rogue::output.empty()) Rogue::output = point.name;
     runtime::testing::add_program(config, "rogue", [] { return &entry; });
 }
 

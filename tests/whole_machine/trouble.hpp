@@ -90,9 +90,10 @@ enum class Deed : std::uint8_t {
     stop_program,
     force,
     restart,  ///< the machine comes up
+    end,      ///< it is told to
 };
-inline constexpr std::array<std::string_view, 12> deed_names{"jog",   "home",        "move",          "power_on",     "power_off", "stop",
-                                                             "reset", "change_mode", "start_program", "stop_program", "force",     "restart"};
+inline constexpr std::array<std::string_view, 13> deed_names{"jog",   "home",        "move",          "power_on",     "power_off", "stop",
+                                                             "reset", "change_mode", "start_program", "stop_program", "force",     "restart", "end"};
 [[nodiscard]] constexpr std::string_view name(Deed deed) noexcept { return deed_names[static_cast<std::size_t>(deed)]; }
 
 }  // namespace taktwerk::whole

@@ -38,7 +38,6 @@ TEST(WholeCampaign, EachRunEndsAsDocumented) {
     long commands = 0;
     for (auto seed = begin; seed < begin + runs; ++seed) {
         const auto run = run_whole(seed);
-        if (std::getenv("COLLECT")) fmt::print("SEED {}\n", seed);
         commands += run.commands;
         if (run.problems.empty()) continue;
         std::string all;

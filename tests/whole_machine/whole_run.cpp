@@ -157,6 +157,7 @@ private:
         begin_work(rig_);
         live(200ms + drawn(2s), false);
         const auto longest = rig_.m.machine->longest_stop();
+        (void)rig_.begins(Deed::end);
         rig_.m.machine->request_shutdown();
         const auto asked = rig_.now();
         run(drawn(100ms));
