@@ -8,7 +8,7 @@ namespace taktwerk::axes {
 
 enum class KinematicFault : std::uint8_t {
     none,
-    not_finite,      ///< a NaN or an infinity came in, or an orientation whose length is not 1
+    not_finite,      ///< a NaN, an infinity or a number above 1e12 came in, or an orientation whose length is not 1
     out_of_reach,    ///< amount: by how much, unit of length
     orientation,     ///< the arm cannot turn its tool that way (a SCARA does not tilt). amount: by how much, rad
     joint_limit,     ///< joint: which; amount: by how much, rad or unit of length

@@ -8,9 +8,12 @@ namespace {
 /// An orientation this far from length 1 is a mistake; nearer, it is rounding and is scaled.
 constexpr double length_rounding = 1e-6;
 
+/// What is larger is no place of a machine, in whatever unit; what is computed from it would be infinite.
+constexpr double largest = 1e12;
+
 bool sound(const Pose& pose) noexcept {
     for (const double v : pose.position)
-        if (!std::isfinite(v)) return false;
+        if (!(std::abs(v) <= largest)) return false;
     return std::abs(orientation_of(pose).norm() - 1) < length_rounding;
 }
 
@@ -21,13 +24,14 @@ Frame<double> frame_of_scaled(Pose pose) noexcept {
 }
 
 bool finite(const Joints& joints) noexcept {
-    return std::all_of(joints.begin(), joints.end(), [](double v) { return std::isfinite(v); });
+    return std::all_of(joints.begin(), joints.end(), [](double v) { return std::abs(v) <= largest; });
 }
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 
-/// The turn that an angle is in; beyond what a number of turns holds, the last one.
+/// The turn that an angle is in; beyond what a number of turns holds, the last one (of what is no number, the lowest).
 std::int8_t turn_of(double angle) noexcept {
+    if (!(std::abs(angle) < 1e6)) return angle > 0 ? 127 : -127;
     double whole = std::clamp(nearest_whole(angle / whole_turn), -127.0, 127.0);
     // A half belongs to the turn before.
     if (angle - whole_turn * whole > whole_turn / 2) ++whole;

@@ -43,6 +43,7 @@ const std::vector<OwnedInclude>& owned_includes() {
         {std::regex("^(boost/|hmi_bridge/web/server/(?!web_server))"), {"hmi_bridge/web/server"}, {}, "Boost"},
         {std::regex("^sodium(/|\\.h)"), {"hmi_bridge/web/account", "runtime/signature"}, {}, "libsodium"},
         {std::regex("^nlohmann/"), {"hmi_bridge", "apps", "runtime/json", "runtime/scope_file", "runtime/bundle"}, {}, "nlohmann-json"},
+        {std::regex("^Eigen/"), {"axes", "tests"}, {}, "Eigen"},
         {std::regex("^sqlite3"), {"hmi_bridge/history"}, {}, "SQLite"},
         {std::regex("^CLI/"), {"apps"}, {}, "CLI11"},
         {std::regex("^(gtest|gmock|benchmark)/"), {"tests"}, {}, "a test library"},

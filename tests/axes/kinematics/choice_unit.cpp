@@ -178,6 +178,30 @@ TEST(KinematicChoice, WhatIsNoPoseIsRefused) {
     EXPECT_EQ(made(linear_delta()).forward({0, 1, 1}, {}).miss.fault, KinematicFault::does_not_close);
 }
 
+// Whatever comes in: nothing that is told as reached is far from what was asked, and nothing that is no number is told.
+TEST(KinematicChoice, HostileNumbers) {
+    const double numbers[] = {0, 1e-320, .3, -1, 1e11, -1e160, std::numeric_limits<double>::max()};
+    for (const PublishedArm& arm : published_arms()) {
+        SCOPED_TRACE(arm.name);
+        const Kinematics kinematics = made(arm);
+        for (const double x : numbers)
+            for (const double z : numbers)
+                for (const double near : numbers) {
+                    const Pose pose{{x, -x, z}, {1, 0, 0, 0}};
+                    const AxisSolution way = kinematics.inverse(pose, {}, {}, {near, near, near, near, near, near});
+                    if (way.ok()) {
+                        EXPECT_LT(difference(kinematics.forward(way.axes, {}).pose, pose).position,
+                                  1e-9 * (1 + std::abs(near) + std::abs(x) + std::abs(z)));
+                    }
+                    (void)kinematics.configuration({x, z, near, x, z, near});
+                    (void)kinematics.singularity({x, z, near, x, z, near});
+                    (void)kinematics.limits_of({x, z, near, x, z, near});
+                }
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        (void)kinematics.configuration({nan, nan, nan, nan, nan, nan});
+    }
+}
+
 // K-03: a line through the wrist's singularity, at every distance from it: axis 4 stays where it is when the distance is 0, and the pose is
 // kept to 1e-9 whatever the axes do.
 TEST(KinematicChoice, WristPassesItsSingularity) {

@@ -16,6 +16,7 @@ struct PublishedArm {
     std::string name;
     KinematicsDescription description;
     Joints low{}, high{};  ///< where cases are drawn: axes
+    bool closed_form = true;
 };
 
 inline Joints all_joints(double value) { return {value, value, value, value, value, value}; }
@@ -85,6 +86,7 @@ inline PublishedArm crx_10ia() {
                                  DhConvention::modified};
     PublishedArm arm{"FANUC CRX-10iA", {.arm = SixJoints{.geometry = table}}, all_joints(-std::numbers::pi), all_joints(std::numbers::pi)};
     arm.description.coupling[2][1] = -1;
+    arm.closed_form = false;
     return arm;
 }
 // Epson, G10 series manual: arm 2 is 400 mm long; type 650, so arm 1 is 250 mm. Joint 1 at 0 faces +X, joint 2 at 0 is in line, both positive
@@ -135,6 +137,7 @@ inline LinkDeviations found_by_calibration() {
 }
 inline PublishedArm calibrated(PublishedArm arm) {
     arm.name += ", calibrated";
+    arm.closed_form = false;
     std::get<SixJoints>(arm.description.arm).deviations = found_by_calibration();
     return arm;
 }
