@@ -55,6 +55,8 @@ std::string block_reference_markdown() {
     for (const BlockType& type : types_of<MotionBlocks>) append_block(page, type);
     page += "\n## PLCopen homing\n";
     for (const BlockType& type : types_of<HomingBlocks>) append_block(page, type);
+    page += "\n## PLCopen groups\n";
+    for (const BlockType& type : types_of<GroupBlocks>) append_block(page, type);
 
     page += "\n## Fieldbus\n";
     for (const BlockType& type : types_of<FieldbusBlocks>) append_block(page, type);

@@ -80,10 +80,16 @@ public:
             phase_ = Phase::active;
             return;
         }
+        follow_in(*view, completion);
+    }
+    /// The same in the view of whoever keeps the command: an axis, a group.
+    template <class View>
+    void follow_in(const View& view, Completion completion) noexcept {
+        if (!running()) return;
         using Status = axes::CommandStatus;
         axes::ErrorId error = axes::ErrorId::none;
-        switch (view->status(command_, &error)) {
-            case Status::unknown: phase_ = static_cast<std::int32_t>(command_ - view->last_id) > 0 ? Phase::waiting : Phase::aborted; break;
+        switch (view.status(command_, &error)) {
+            case Status::unknown: phase_ = static_cast<std::int32_t>(command_ - view.last_id) > 0 ? Phase::waiting : Phase::aborted; break;
             case Status::queued: phase_ = Phase::waiting; break;
             case Status::active: phase_ = Phase::active; break;
             case Status::in_target:
@@ -95,6 +101,12 @@ public:
             case Status::aborted: phase_ = Phase::aborted; break;
             case Status::error: refuse(error != axes::ErrorId::none ? error : axes::ErrorId::aborted_by_axis_error); break;
         }
+    }
+
+    /// A command that no axis but a group has accepted.
+    constexpr void accepted(axes::CommandId id) noexcept {
+        start({});
+        command_ = id;
     }
 
     // For blocks whose work is no axis command.

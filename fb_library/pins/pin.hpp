@@ -36,6 +36,7 @@ enum class PinKind : std::uint8_t {
     DEVICE_REF,  ///< taktwerk::DeviceRef, a handle
     HANDLE,      ///< to something else; PinType::name says to what ("MC_CAM_REF"). Its bytes mean nothing outside the machine
     ENUM,        ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
+    STRUCT,      ///< several values, by members; PinType::name says which ("MC_POS_REF"). Monitors and retained values pass it by
 };
 
 /// 32 bits that are no number (DWORD).

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "axes/axis/motion_context.hpp"
+#include "axes/group/group_access.hpp"
 #include "fb_library/block_abi.hpp"
 #include "programs/api/program.hpp"
 
@@ -14,14 +15,14 @@ namespace taktwerk {
 inline constexpr const char* sdk_version = "0.1.0";
 
 /// Raise it by one, in the same commit, when
-///  - a virtual function of Program, Declaration or AxisRequests is added, removed, moved, or changes its signature or meaning;
+///  - a virtual function of Program, Declaration, AxisRequests or GroupAccess is added, removed, moved, or changes its signature or meaning;
 ///  - an enumerator that passes between program and runtime gets another number (AxisState, ErrorId, Owner, CommandKind, Outcome,
 ///    CommandStatus, Reaction, VariableType, MC_...); appending one is no change;
 ///  - the members of a struct that both sides touch change in a way the sizes and offsets below do not show (two of one type
 ///    swapped, another unit, another meaning);
 ///  - a block's function and the axis agree on something new (what a command id means, who renews a lease).
 /// Not for: new blocks or pins (hashed), documentation, anything behind the virtual functions. It is never lowered or reused.
-inline constexpr std::uint64_t program_interface_version = 8;
+inline constexpr std::uint64_t program_interface_version = 9;
 
 [[nodiscard]] constexpr std::uint64_t abi_hash() noexcept {
     std::uint64_t hash = fb::block_abi_hash;
@@ -43,6 +44,11 @@ inline constexpr std::uint64_t program_interface_version = 8;
     add(offsetof(axes::AxisCommand, velocity));
     add(offsetof(axes::AxisCommand, jerk));
     add(sizeof(axes::Submitted));
+    add(sizeof(axes::GroupView));
+    add(offsetof(axes::GroupView, set_position));
+    add(offsetof(axes::GroupView, ledger));
+    add(sizeof(axes::GroupCommand));
+    add(sizeof(axes::GroupSetting));
     add(sizeof(axes::MotionContext));
     add(sizeof(axes::MotionTables));
     add(sizeof(TaskContext));

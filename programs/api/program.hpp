@@ -59,6 +59,8 @@ public:
     using TaskFunction = void (*)(void* program, TaskContext& context);
 
     virtual AxisRef axis(std::string_view name) = 0;
+    /// A group of axes (`axis_groups` of the machine), for the blocks of PLCopen Part 4. They are called in a base task.
+    virtual axes::GroupRef axis_group(std::string_view name) = 0;
     /// A slave of the bus, for its objects: EC_SdoRead, EC_SdoWrite, ObjectFuture.
     virtual DeviceRef device(std::string_view name) = 0;
     virtual Input<bool> input(std::string_view name) = 0;
@@ -198,6 +200,7 @@ private:
             constexpr auto pin = fb::PinTypeOf<T>::value.kind;
             static_assert(pin != fb::PinKind::AXIS_REF && pin != fb::PinKind::DEVICE_REF && pin != fb::PinKind::HANDLE,
                           "a handle means nothing after a restart: declare it again");
+            static_assert(pin != fb::PinKind::STRUCT, "keep its members one by one");
             add_retained(kind, name, fb::PinTypeOf<T>::value, &v, task);
         }
     }

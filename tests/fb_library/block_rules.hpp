@@ -62,8 +62,13 @@ template <class B>
 struct Commands : std::bool_constant<IsCommand<B>> {};
 template <class B>
 struct HasExecute : std::bool_constant<IsExecute<B> && IsCommand<B>> {};
+/// Those of groups act on no axis of their own: their rules are shown on a group (tests/fb_library/groups).
 template <class B>
-struct HasEnable : std::bool_constant<IsEnable<B>> {};
+concept IsOfGroup = requires(B b) {
+    b.AxesGroup;
+};
+template <class B>
+struct HasEnable : std::bool_constant<IsEnable<B> && !IsOfGroup<B>> {};
 template <class B>
     struct HasContinuousUpdate : std::bool_constant < requires(B b) {
     b.ContinuousUpdate;

@@ -1,0 +1,258 @@
+#pragma once
+// Where a group is and how fast: MC_GroupReadPosition, MC_GroupReadVelocity, MC_GroupReadAcceleration (v2.0), MC_GroupReadActualPosition,
+// MC_GroupReadActualVelocity (v1.0), and the dynamics that count where a command says none: MC_GroupWriteDefaultDynamics,
+// MC_GroupReadDefaultDynamics; MC_GroupReadSWLimits. PLCopen Part 4. Real-time safe. Values go back whenever Valid is FALSE.
+
+#include <cmath>
+#include <string_view>
+
+#include "axes/axis/parameters.hpp"
+#include "fb_library/groups/group_block.hpp"
+
+namespace taktwerk::fb {
+
+namespace detail {
+
+/// Whether values of the axes are values of this frame too: no_kinematics, not_supported.
+[[nodiscard]] constexpr ErrorId refuse_frame(const axes::GroupView& view, MC_CoordSystem frame) noexcept {
+    if (frame == mcACS) return ErrorId::none;
+    if (view.kinematics == axes::GroupKinematics::none) return ErrorId::no_kinematics;
+    for (std::size_t i = 3; i < axes::most_members; ++i)
+        if (view.has(i)) return ErrorId::no_kinematics;
+    return frame == mcMCS ? ErrorId::none : ErrorId::not_supported;
+}
+[[nodiscard]] inline MC_POS_REF place_of(const AxisValues& values, MC_CoordSystem frame) noexcept {
+    MC_POS_REF place;
+    if (frame == mcACS) place.A.Axes = values;
+    else place.C.Tcp = {values[0], values[1], values[2], 0, 0, 0};
+    return place;
+}
+[[nodiscard]] inline double norm(const AxisValues& values) noexcept {
+    double sum = 0;
+    for (const double value : values) sum += value * value;
+    return std::sqrt(sum);
+}
+
+}  // namespace detail
+
+/// Of mcActualValue Error with drive_not_ready while the feedback of a member is missing.
+struct MC_GroupReadPosition : GroupReadBlock<MC_GroupReadPosition> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+    MC_CoordSystem CoordSystem = mcACS;
+    MC_Source Source = mcSetValue;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    MC_POS_REF Position{};
+
+    static constexpr std::string_view summary = "Gives where the group is.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
+                         out<&Self::Position>("", "A in ACS, else C; mcCommandedValue: the end of the active command"));
+    }
+    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
+        const auto error = detail::refuse_frame(view, CoordSystem);
+        if (error != ErrorId::none) return Reading::unless(error);
+        Position = detail::place_of(Source == mcActualValue      ? view.actual_position
+                                    : Source == mcCommandedValue ? view.commanded
+                                                                 : view.set_position,
+                                    CoordSystem);
+        return Reading::unless(Source == mcActualValue && !view.online ? ErrorId::drive_not_ready : ErrorId::none);
+    }
+    void clear() noexcept { Position = {}; }
+};
+
+/// Its commanded value would be the path's: not_supported.
+struct MC_GroupReadVelocity : GroupReadBlock<MC_GroupReadVelocity> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+    MC_CoordSystem CoordSystem = mcACS;
+    MC_Source Source = mcSetValue;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    AxisValues Velocity{};
+    double PathVelocity = 0;
+
+    static constexpr std::string_view summary = "Gives how fast the group moves.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
+                         out<&Self::Velocity>("", "u/s of each member; in MCS of X, Y, Z"),
+                         out<&Self::PathVelocity>("u/s", "along the path"));
+    }
+    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
+        auto error = detail::refuse_frame(view, CoordSystem);
+        if (error == ErrorId::none && Source == mcCommandedValue) error = ErrorId::not_supported;
+        if (error != ErrorId::none) return Reading::unless(error);
+        Velocity = Source == mcActualValue ? view.actual_velocity : view.set_velocity;
+        PathVelocity = Source == mcActualValue ? detail::norm(Velocity) : view.path_velocity;
+        return Reading::unless(Source == mcActualValue && !view.online ? ErrorId::drive_not_ready : ErrorId::none);
+    }
+    void clear() noexcept {
+        Velocity = {};
+        PathVelocity = 0;
+    }
+};
+
+/// Of set values; nobody measures the others: not_supported.
+struct MC_GroupReadAcceleration : GroupReadBlock<MC_GroupReadAcceleration> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+    MC_CoordSystem CoordSystem = mcACS;
+    MC_Source Source = mcSetValue;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    AxisValues Acceleration{};
+    double PathAcceleration = 0;
+
+    static constexpr std::string_view summary = "Gives the group's set acceleration.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), in<&Self::Source>("", "mcSetValue"),
+                         reading<Self>(), out<&Self::Acceleration>("", "u/s2 of each member; in MCS of X, Y, Z"),
+                         out<&Self::PathAcceleration>("u/s2", "along the path"));
+    }
+    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
+        auto error = detail::refuse_frame(view, CoordSystem);
+        if (error == ErrorId::none && Source != mcSetValue) error = ErrorId::not_supported;
+        if (error != ErrorId::none) return Reading::unless(error);
+        Acceleration = view.set_acceleration;
+        PathAcceleration = view.path_acceleration;
+        return Reading::valid();
+    }
+    void clear() noexcept {
+        Acceleration = {};
+        PathAcceleration = 0;
+    }
+};
+
+/// MC_GroupReadPosition of actual values, under the name and with the pins of v1.0.
+struct MC_GroupReadActualPosition : GroupReadBlock<MC_GroupReadActualPosition> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+    MC_CoordSystem CoordSystem = mcACS;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    AxisValues Position{};
+
+    static constexpr std::string_view summary = "Gives the group's actual position (v1.0; v2.0: MC_GroupReadPosition).";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
+                         out<&Self::Position>("", "u of each member; in MCS X, Y, Z"));
+    }
+    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
+        const auto error = detail::refuse_frame(view, CoordSystem);
+        if (error != ErrorId::none) return Reading::unless(error);
+        Position = view.actual_position;
+        return Reading::unless(view.online ? ErrorId::none : ErrorId::drive_not_ready);
+    }
+    void clear() noexcept { Position = {}; }
+};
+
+/// MC_GroupReadVelocity of actual values, likewise.
+struct MC_GroupReadActualVelocity : GroupReadBlock<MC_GroupReadActualVelocity> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+    MC_CoordSystem CoordSystem = mcACS;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    AxisValues Velocity{};
+    double PathVelocity = 0;
+
+    static constexpr std::string_view summary = "Gives the group's actual velocity (v1.0; v2.0: MC_GroupReadVelocity).";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
+                         out<&Self::Velocity>("", "u/s of each member; in MCS of X, Y, Z"),
+                         out<&Self::PathVelocity>("u/s", "of all together"));
+    }
+    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
+        const auto error = detail::refuse_frame(view, CoordSystem);
+        if (error != ErrorId::none) return Reading::unless(error);
+        Velocity = view.actual_velocity;
+        PathVelocity = detail::norm(Velocity);
+        return Reading::unless(view.online ? ErrorId::none : ErrorId::drive_not_ready);
+    }
+    void clear() noexcept {
+        Velocity = {};
+        PathVelocity = 0;
+    }
+};
+
+/// 0 or less leaves a value as it is.
+struct MC_GroupWriteDefaultDynamics : GroupSettingBlock<MC_GroupWriteDefaultDynamics> {
+    GroupRef AxesGroup{};
+    bool Execute = false;
+    double Velocity = -1, Acceleration = -1, Deceleration = -1, Jerk = -1;
+
+    bool Done = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+
+    static constexpr std::string_view summary = "Says how fast the group moves where a command does not.";
+    static consteval auto pins() {
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Velocity>("u/s", "along the path; 0 or less = stays as it is"),
+            in<&Self::Acceleration>("u/s2", "likewise"), in<&Self::Deceleration>("u/s2", "likewise"), in<&Self::Jerk>("u/s3", "likewise"),
+            out<&Self::Done>("", "later commands have them"), grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
+    }
+    [[nodiscard]] axes::GroupSetting setting() const noexcept {
+        return axes::WriteDynamics{axes::WriteDynamics::Which::default_dynamics, {Velocity, Acceleration, Deceleration, Jerk}};
+    }
+};
+
+struct MC_GroupReadDefaultDynamics : GroupReadBlock<MC_GroupReadDefaultDynamics> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    double Velocity = 0, Acceleration = 0, Deceleration = 0, Jerk = 0;
+
+    static constexpr std::string_view summary = "Gives how fast the group moves where a command does not say it.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
+                         out<&Self::Velocity>("u/s", "along the path; 0 = what the axes' limits leave"),
+                         out<&Self::Acceleration>("u/s2", "likewise"), out<&Self::Deceleration>("u/s2", "likewise"),
+                         out<&Self::Jerk>("u/s3", "likewise"));
+    }
+    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
+        const auto& known = view.default_dynamics;
+        Velocity = known.velocity;
+        Acceleration = known.acceleration;
+        Deceleration = known.deceleration;
+        Jerk = known.jerk;
+        return Reading::valid();
+    }
+    void clear() noexcept { Velocity = Acceleration = Deceleration = Jerk = 0; }
+};
+
+/// The axes' own limits: there are no others.
+struct MC_GroupReadSWLimits : GroupReadBlock<MC_GroupReadSWLimits> {
+    GroupRef AxesGroup{};
+    bool Enable = false;
+
+    bool Valid = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+    MC_GROUP_SWLIMITS LimitValues{};
+
+    static constexpr std::string_view summary = "Gives the software limits of all members.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::LimitValues>("", "u; infinity = none"));
+    }
+    [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
+        const axes::GroupView* view = view_of(ctx, AxesGroup);
+        if (view == nullptr) return Reading::unless(ErrorId::invalid_group);
+        for (std::size_t i = 0; i < axes::most_members; ++i) {
+            const axes::AxisView* axis = view->has(i) ? ctx.view(view->members[i]) : nullptr;
+            LimitValues.Axes[i] = axis == nullptr ? MC_GROUP_SWLIMITS::Limits{}
+                                                  : MC_GROUP_SWLIMITS::Limits{axis->parameters[axes::software_limit_positive],
+                                                                              axis->parameters[axes::software_limit_negative]};
+        }
+        return Reading::valid();
+    }
+    void clear() noexcept { LimitValues = {}; }
+};
+
+}  // namespace taktwerk::fb
