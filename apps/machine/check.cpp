@@ -276,9 +276,9 @@ std::string slower_task_text(const MachineConfig& config, const runtime::TaskCon
     std::string out = priority > 0 ? fmt::format(", priority {}", priority) : std::string(", an ordinary thread");
     if (task.overrun == runtime::OverrunReaction::count) out += ", missed releases are counted";
     else
-        out += fmt::format(", {} missed releases in a row are borne, then {}", task.overruns_allowed,
+        out += fmt::format(", {} missed releases in a row are borne, then {}", runtime::TaskWatch::overruns_allowed(task, config),
                            task.overrun == runtime::OverrunReaction::stop_program ? "the program stops" : "all axes stop");
-    const auto watchdog = runtime::TaskWatch::watchdog_of(task, config.cycle);
+    const auto watchdog = runtime::TaskWatch::watchdog_of(task, config);
     if (watchdog == Duration{}) return out + ", no watchdog";
     out += fmt::format(", watchdog {:g} ms", to_seconds(watchdog) * 1e3);
     if (task.watchdog_sensitivity > 1) out += fmt::format(" ({} runs in a row)", task.watchdog_sensitivity);

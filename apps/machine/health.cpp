@@ -52,6 +52,9 @@ Health health_of(const Json& hello, const Json& told) {
     }
     for (const auto& program : part(state, "programs", Json::array()))
         h.programs.emplace_back(program.value("name", std::string{}), program.value("state", std::string{}));
+    for (const auto& task : part(state, "tasks", Json::array()))
+        h.tasks.push_back({task.value("name", std::string{}), task.value("releases", 0.0), task.value("overruns", 0.0),
+                           task.value("run_ns", 0.0) / 1000, task.value("run_max_ns", 0.0) / 1000});
     for (const auto& alarm : part(state, "alarms", Json::array()))
         if (auto reaction = alarm.value("reaction", std::string{}); stops_something(reaction))
             h.alarms.push_back({alarm.value("source", std::string{}), alarm.value("name", std::string{}),
@@ -66,6 +69,9 @@ std::string health_text(const Health& h) {
     if (!h.mode.empty())
         text += fmt::format("  {}, {} mode; {} of {} axes powered, {} homed\n", h.phase, h.mode, h.powered, h.axes, h.homed);
     for (const auto& [name, state] : h.programs) text += fmt::format("  program {}: {}\n", name, state);
+    for (const auto& task : h.tasks)
+        text += fmt::format("  task {}: {:.0f} runs, {:.0f} overruns, {:.0f} us, at most {:.0f} us\n", task.name, task.runs, task.overruns,
+                            task.run_us, task.run_max_us);
     if (h.cycles > 0)
         text += fmt::format(
             "  {:.0f} cycles, {:.0f} ticks missed, wake-up at most {:.0f} us late, computing at most {:.0f} us; {:.0f} frames lost\n",
@@ -93,6 +99,13 @@ Json health_json(const Health& h) {
               {"uptime_s", h.uptime_s}};
     auto& programs = json["programs"] = Json::array();
     for (const auto& [name, state] : h.programs) programs.push_back({{"name", name}, {"state", state}});
+    auto& tasks = json["tasks"] = Json::array();
+    for (const auto& task : h.tasks)
+        tasks.push_back({{"name", task.name},
+                         {"runs", task.runs},
+                         {"overruns", task.overruns},
+                         {"run_us", task.run_us},
+                         {"run_max_us", task.run_max_us}});
     auto& alarms = json["alarms"] = Json::array();
     for (const auto& alarm : h.alarms)
         alarms.push_back({{"source", alarm.source},

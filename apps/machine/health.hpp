@@ -21,7 +21,12 @@ struct Health {
     };
     std::vector<Listed> alarms;                                 ///< those that stop something
     std::vector<std::pair<std::string, std::string>> programs;  ///< name, state
-    std::vector<std::string> unwell;                            ///< why it is not; empty: it is well
+    struct Task {
+        std::string name;  ///< with its program's
+        double runs = 0, overruns = 0, run_us = 0, run_max_us = 0;
+    };
+    std::vector<Task> tasks;
+    std::vector<std::string> unwell;  ///< why it is not; empty: it is well
 
     [[nodiscard]] bool well() const noexcept { return unwell.empty(); }
 };

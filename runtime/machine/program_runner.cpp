@@ -76,7 +76,7 @@ void ProgramRunner::build_tasks() {
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
                                         body_.tables, values_.count_of(i), std::move(kept)),
              i,
-             TaskWatch{task.config, body_.config.cycle},
+             TaskWatch{task.config, body_.config},
              true,
              {},
              std::move(shows),
@@ -345,7 +345,8 @@ std::string ProgramRunner::fault(std::size_t program) const {
         const auto& config = host_.tasks()[*task].config;
         return programs_[program].stopped_by.verdict() == TaskVerdict::watchdog
                    ? fmt::format("task '{}' did not end within its watchdog time", config.name)
-                   : fmt::format("task '{}' missed more than {} releases in a row", config.name, config.overruns_allowed);
+                   : fmt::format("task '{}' missed more than {} releases in a row", config.name,
+                                 TaskWatch::overruns_allowed(config, body_.config));
     }
     const std::lock_guard lock{fault_words_};
     return host_.programs()[program].fault;

@@ -85,8 +85,10 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     if (task.undeclared().what != TaskContext::Undeclared::What::nothing) program.undeclared = task.undeclared();
     auto& alarms = host_.programs()[p].alarms;
     auto& io = body_.io;
+    const auto applied = task.applied();
     task.apply(program.requests, io.outputs(), alarms);
-    times_.book(slow.place, task.last_run(), task.last_lateness(), body_.cycles + 1);  // of this cycle, which is not over
+    if (task.applied() != applied)                                                         // at its first release there is no run before
+        times_.book(slow.place, task.last_run(), task.last_lateness(), body_.cycles + 1);  // of this cycle, which is not over
     task.set_write_count(values_.take(slow.place, task.writes()));
     CycleContext context;
     context.now = body_.now;
@@ -177,12 +179,12 @@ void ProgramRunner::raise_alarms_of_task(const SlowPlace& slow) noexcept {
     const auto place = static_cast<std::uint16_t>(slow.place);
     const auto& program = programs_[slow.task->program()];
     const auto overruns = slow.watch.overruns();
-    if (task.overrun == OverrunReaction::stop_machine && overruns > task.overruns_allowed && program.running())
-        body_.raise(MachineAlarm::task_overrun, AlarmSource::task, place, overruns, task.overruns_allowed);
+    if (task.overrun == OverrunReaction::stop_machine && overruns > slow.watch.overruns_allowed() && program.running())
+        body_.raise(MachineAlarm::task_overrun, AlarmSource::task, place, overruns, slow.watch.overruns_allowed());
     // Also behind a reset, for as long as its thread has not come back: its program cannot be started, and this says why.
     if (program.stopped_by.task() != slow.place || (program.state != ProgramState::fault && slow.finished)) return;
     if (program.stopped_by.verdict() == TaskVerdict::late)
-        body_.raise(MachineAlarm::task_late, AlarmSource::task, place, slow.taken, task.overruns_allowed);
+        body_.raise(MachineAlarm::task_late, AlarmSource::task, place, slow.taken, slow.watch.overruns_allowed());
     else body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
 }
 

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration shortest_patience = 250ms;
 constexpr int cycles_of_patience = 50;
-constexpr int relaxed_factor = 10;
+constexpr int relaxed_patience = 10;
 
 }  // namespace
 
@@ -24,7 +24,7 @@ std::string StuckCycle::text() const {
 
 AdvanceWatch::AdvanceWatch(const Machine& machine)
     : machine_(machine), patience_(std::max<Duration>(shortest_patience, cycles_of_patience * machine.config().cycle)) {
-    if (machine.config().simulation.supervision == Supervision::relaxed) patience_ *= relaxed_factor;
+    if (machine.config().simulation.supervision == Supervision::relaxed) patience_ *= relaxed_patience;
 }
 
 std::optional<StuckCycle> AdvanceWatch::look(Instant now) {

@@ -27,7 +27,7 @@ RealtimeReport TaskThreads::start(const std::atomic<bool>& stop) {
         auto& place = places_.emplace_back();
         place.task = i;
         place.priority = priorities[i];
-        const auto watchdog = TaskWatch::watchdog_of(tasks[i], machine_.config().cycle);
+        const auto watchdog = TaskWatch::watchdog_of(tasks[i], machine_.config());
         if (watchdog > Duration{}) place.at_priority = std::min(longest_at_priority, watchdog * tasks[i].watchdog_sensitivity);
     }
     for (auto& place : places_) place.thread = std::thread{[this, &place, &stop] { run(place, stop); }};

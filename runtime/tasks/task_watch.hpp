@@ -7,6 +7,7 @@
 
 #include "core/time.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/relaxed_supervision.hpp"
 
 namespace taktwerk::runtime {
 
@@ -19,19 +20,24 @@ enum class TaskVerdict : std::uint8_t {
 
 class TaskWatch {
 public:
-    /// Without a `watchdog`: ten periods, and at least this. Long beside what a computer without real time does to a thread.
+    /// Without a `watchdog`: ten periods, and at least this; where supervision is relaxed ten times as long.
     static constexpr Duration shortest_default = std::chrono::milliseconds{250};
-    static constexpr int periods_by_default = 10;
+    static constexpr int periods_by_default = 10, relaxed_watchdog_factor = 10;
 
     /// How long one run may take; 0: no limit.
-    [[nodiscard]] static Duration watchdog_of(const TaskConfig& task, Duration cycle) noexcept {
-        return task.watchdog.value_or(std::max(shortest_default, cycle * static_cast<Duration::rep>(task.divisor) * periods_by_default));
+    [[nodiscard]] static Duration watchdog_of(const TaskConfig& task, const MachineConfig& machine) noexcept {
+        const auto strict = std::max(shortest_default, machine.cycle * static_cast<Duration::rep>(task.divisor) * periods_by_default);
+        return task.watchdog.value_or(machine.simulation.supervision == Supervision::relaxed ? strict * relaxed_watchdog_factor : strict);
+    }
+    /// Releases that it may miss in a row.
+    [[nodiscard]] static std::uint32_t overruns_allowed(const TaskConfig& task, const MachineConfig& machine) noexcept {
+        return supervised_limit(machine, task.overruns_allowed);
     }
 
-    TaskWatch(const TaskConfig& task, Duration cycle) noexcept
-        : watchdog_(static_cast<std::uint64_t>((watchdog_of(task, cycle) + cycle - Duration{1}) / cycle)),
+    TaskWatch(const TaskConfig& task, const MachineConfig& machine) noexcept
+        : watchdog_(static_cast<std::uint64_t>((watchdog_of(task, machine) + machine.cycle - Duration{1}) / machine.cycle)),
           sensitivity_(std::max<std::uint16_t>(1, task.watchdog_sensitivity)),
-          overruns_allowed_(task.overruns_allowed),
+          overruns_allowed_(overruns_allowed(task, machine)),
           late_counts_(task.overrun == OverrunReaction::stop_program) {}
 
     /// Released in this cycle.
@@ -40,9 +46,7 @@ public:
         at_work_ = true;
     }
     /// It was due in this cycle and had not ended.
-    void missed() noexcept {
-        if (overruns_ < 0xFFFF) ++overruns_;
-    }
+    void missed() noexcept { ++overruns_; }
     /// It was due, and had ended.
     void in_time() noexcept { overruns_ = 0; }
     /// The cycle has taken note that its run has ended.
@@ -65,7 +69,8 @@ public:
         return late_counts_ && overruns_ > overruns_allowed_ ? TaskVerdict::late : TaskVerdict::in_time;
     }
     /// Releases that it has missed in a row.
-    [[nodiscard]] std::uint16_t overruns() const noexcept { return overruns_; }
+    [[nodiscard]] std::uint32_t overruns() const noexcept { return overruns_; }
+    [[nodiscard]] std::uint32_t overruns_allowed() const noexcept { return overruns_allowed_; }
     /// So many cycles the run takes that is at work, else the last one.
     [[nodiscard]] std::uint64_t cycles_taken(std::uint64_t cycle) const noexcept { return at_work_ ? cycle - released_ : last_; }
     /// In cycles; 0: none.
@@ -74,10 +79,10 @@ public:
 private:
     std::uint64_t watchdog_;
     std::uint32_t sensitivity_;
-    std::uint16_t overruns_allowed_;
+    std::uint32_t overruns_allowed_;
     bool late_counts_;
     bool at_work_ = false;
-    std::uint16_t overruns_ = 0;
+    std::uint32_t overruns_ = 0;
     std::uint32_t bites_ = 0;
     std::uint64_t released_ = 0, last_ = 0;
 };

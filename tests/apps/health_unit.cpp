@@ -20,6 +20,7 @@ Json state() {
     return Json::parse(R"({"phase":"running","mode":"automatic","simulated":false,"emergency_stop":false,
         "bus":{"phase":"operational","frames_lost":0},"statistics":{"cycles":60000,"missed_ticks":1,"lateness_max_ns":45000,"compute_max_ns":80000},
         "axes":[{"powered":true,"homed":true},{"powered":false,"homed":true}],"programs":[{"name":"cell","state":"running"}],
+        "tasks":[{"name":"cell.main","releases":60000,"overruns":2,"run_ns":12000,"run_max_ns":40000}],
         "alarms":[{"source":"axis x","name":"following_warning","english":"w","reaction":"warn","standing":true}]})");
 }
 
@@ -31,10 +32,13 @@ TEST(HealthOf, AMachineThatRunsIsWellAlsoWithAWarning) {
     EXPECT_EQ(h.homed, 2u);
     EXPECT_THAT(health_text(h), HasSubstr("cell: well\n"));
     EXPECT_THAT(health_text(h), HasSubstr("wake-up at most 45 us late"));
+    EXPECT_THAT(health_text(h), HasSubstr("task cell.main: 60000 runs, 2 overruns, 12 us, at most 40 us\n"));
     const auto json = health_json(h);
     EXPECT_EQ(json["well"], true);
     EXPECT_EQ(json["pid"], 17);
     EXPECT_EQ(json["lateness_max_us"], 45.0);
+    EXPECT_EQ(json["tasks"][0]["name"], "cell.main");
+    EXPECT_EQ(json["tasks"][0]["run_max_us"], 40.0);
 }
 
 TEST(HealthOf, WhatStopsSomethingIsNamed) {

@@ -16,7 +16,7 @@ using nlohmann::json;
 class Questions : public testing::Test {
 protected:
     Questions() {
-        machine.its_times = {&cycle, &tasks};
+        machine.its_times = {&cycle, &tasks, &lateness};
         gateway.observe(true);
         requests.observe(&machine.snapshot);
         requests.on_open(1, {100, 1000, 1000});
@@ -30,7 +30,7 @@ protected:
         return answer ? json::parse(answer->text) : json::object();
     }
     runtime::CycleHistograms cycle;
-    std::vector<SharedHistogram> tasks = std::vector<SharedHistogram>(1);
+    std::vector<SharedHistogram> tasks = std::vector<SharedHistogram>(1), lateness = std::vector<SharedHistogram>(1);
     test::FakeMachine machine;
     Gateway gateway{machine};
     JsonRequests requests{gateway, machine, [] { return std::int64_t{0}; }};
@@ -42,6 +42,7 @@ TEST_F(Questions, HistogramsTellHowOftenAndWhenItTookLongest) {
     cycle.compute.record(100us, 2);
     cycle.compute.record(20ns, 3);
     tasks[0].record(5us, 7);
+    lateness[0].record(30us, 6);
 
     const auto answer = ask(R"({"id":4,"cmd":"histograms"})");
 
@@ -60,6 +61,8 @@ TEST_F(Questions, HistogramsTellHowOftenAndWhenItTookLongest) {
     EXPECT_EQ(h["steps"][0]["name"], "receive");
     EXPECT_EQ(h["tasks"][0]["name"], "cell.main");
     EXPECT_EQ(h["tasks"][0]["longest_cycle"], 7);
+    EXPECT_EQ(h["task_lateness"][0]["name"], "cell.main");
+    EXPECT_EQ(h["task_lateness"][0]["longest_ns"], 30'000);
 }
 
 TEST_F(Questions, ParametersOfADriveTellWhatIsStatedAssumedAndUnknown) {

@@ -175,9 +175,9 @@ TEST_F(TaskReactions, WithoutAWatchdogInTheFileItIsTenPeriodsAndAtLeast250Ms) {
     panel.overrun = OverrunReaction::count;
     begin();
     EXPECT_EQ(cycles_until_ramp(1000), 4 + 251);
-    EXPECT_EQ(TaskWatch::watchdog_of(panel, 1ms), 250ms);
+    EXPECT_EQ(TaskWatch::watchdog_of(panel, m().machine->config()), 250ms);
     panel.divisor = 100;
-    EXPECT_EQ(TaskWatch::watchdog_of(panel, 1ms), 1s);
+    EXPECT_EQ(TaskWatch::watchdog_of(panel, m().machine->config()), 1s);
 }
 
 TEST_F(TaskReactions, WithoutAnyLimitItIsOnlyCounted) {

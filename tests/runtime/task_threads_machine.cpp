@@ -104,7 +104,7 @@ MachineConfig looping_machine() {
     add_program(config, "q", &entry_of<Going>);
     config.tasks[0].name = "loop";
     config.tasks[0].overrun = OverrunReaction::count;
-    config.tasks[0].watchdog = 200ms;
+    config.tasks[0].watchdog = 600ms;  // long beside what a busy host does to an ordinary thread
     return config;
 }
 
@@ -122,10 +122,10 @@ bool run(RealtimeRunner& runner, Machine& machine, Each each, int calls = 60'000
     return done;
 }
 
-bool has_alarm(const Snapshot& s, MachineAlarm alarm) {
+const ActiveAlarm* find(const Snapshot& s, MachineAlarm alarm) {
     for (std::size_t i = 0; i < s.alarm_count; ++i)
-        if (s.alarms[i].fact.id == id(alarm)) return true;
-    return false;
+        if (s.alarms[i].fact.id == id(alarm)) return &s.alarms[i];
+    return nullptr;
 }
 
 // The acceptance of it all: an endless loop is its program's fault. Recorded on its way, and the recording does the same again, byte by byte.
@@ -148,7 +148,6 @@ TEST(TaskThreads, AnEndlessLoopStopsItsProgramAloneAndTheRecordingIsTheSameAgain
     double slowest_y = 60;
     bool y_off = false, x_stood = false, still_fault = false;
     std::string words, at_work;
-    std::size_t alarms_at_most = 0;
     Instant since{};
     std::uint64_t sequence = 0;
     const bool done = run(runner, machine, [&] {
@@ -160,7 +159,6 @@ TEST(TaskThreads, AnEndlessLoopStopsItsProgramAloneAndTheRecordingIsTheSameAgain
         if (at == At::hanging || at == At::coming_back) {
             if (at == At::hanging) slowest_y = std::min(slowest_y, y.set_velocity);
             y_off = y_off || !y.powered;
-            alarms_at_most = std::max(alarms_at_most, s->alarm_count);
         }
         switch (at) {
             case At::moving:
@@ -169,8 +167,8 @@ TEST(TaskThreads, AnEndlessLoopStopsItsProgramAloneAndTheRecordingIsTheSameAgain
                 at = At::hanging;
                 return false;
             case At::hanging:
-                if (!has_alarm(*s, MachineAlarm::task_watchdog) || x.state != AxisState::Disabled) return false;
-                words = machine.describe(s->alarms[0].fact).source;
+                if (find(*s, MachineAlarm::task_watchdog) == nullptr || x.state != AxisState::Disabled) return false;
+                words = machine.describe(find(*s, MachineAlarm::task_watchdog)->fact).source;
                 x_stood = x.set_velocity == 0;
                 at_work = machine.program_at_work();
                 machine.request_stop(1);

@@ -12,6 +12,7 @@ using namespace std::chrono_literals;
 
 struct Watch : ::testing::Test {
     TaskConfig config;
+    MachineConfig machine;  // 1 ms
     std::uint64_t now = 100;
     Watch() { config.overrun = OverrunReaction::count; }
     /// A run of so many cycles; the verdict behind it, and whether it had come before.
@@ -29,16 +30,16 @@ struct Watch : ::testing::Test {
 
 TEST_F(Watch, AFractionOfACycleIsAWholeOne) {
     config.watchdog = 2500us;
-    EXPECT_EQ((TaskWatch{config, 1ms}.watchdog()), 3u);
+    EXPECT_EQ((TaskWatch{config, machine}.watchdog()), 3u);
     config.watchdog = 2ms;
-    EXPECT_EQ((TaskWatch{config, 1ms}.watchdog()), 2u);
+    EXPECT_EQ((TaskWatch{config, machine}.watchdog()), 2u);
     config.watchdog = 0ms;
-    EXPECT_EQ((TaskWatch{config, 1ms}.watchdog()), 0u);
+    EXPECT_EQ((TaskWatch{config, machine}.watchdog()), 0u);
 }
 
 TEST_F(Watch, BitesWithinTheRunThatTakesLonger) {
     config.watchdog = 8ms;
-    TaskWatch watch{config, 1ms};
+    TaskWatch watch{config, machine};
     EXPECT_EQ(run(watch, 8), TaskVerdict::in_time);
     EXPECT_EQ(run(watch, 9), TaskVerdict::watchdog);
     EXPECT_TRUE(early);
@@ -50,7 +51,7 @@ TEST_F(Watch, BitesWithinTheRunThatTakesLonger) {
 TEST_F(Watch, SensitivityBearsSingleLongRuns) {
     config.watchdog = 8ms;
     config.watchdog_sensitivity = 3;
-    TaskWatch watch{config, 1ms};
+    TaskWatch watch{config, machine};
     EXPECT_EQ(run(watch, 10), TaskVerdict::in_time);
     EXPECT_EQ(run(watch, 10), TaskVerdict::in_time);
     EXPECT_EQ(run(watch, 8), TaskVerdict::in_time) << "one in time begins anew";
@@ -67,15 +68,28 @@ TEST_F(Watch, SensitivityBearsSingleLongRuns) {
 
 TEST_F(Watch, WithoutALimitNothingIsTooLong) {
     config.watchdog = 0ms;
-    TaskWatch watch{config, 1ms};
+    TaskWatch watch{config, machine};
     EXPECT_EQ(run(watch, 100'000), TaskVerdict::in_time);
+}
+
+// A host or network without real time: what it does to a thread is nobody's fault. What the file says of a watchdog holds.
+TEST_F(Watch, RelaxedSupervisionIsMorePatient) {
+    config.overruns_allowed = 3;
+    config.divisor = 8;
+    EXPECT_EQ(TaskWatch::watchdog_of(config, machine), 250ms);
+    EXPECT_EQ(TaskWatch::overruns_allowed(config, machine), 3u);
+    machine.simulation.supervision = Supervision::relaxed;
+    EXPECT_EQ(TaskWatch::watchdog_of(config, machine), 2500ms);
+    EXPECT_EQ(TaskWatch::overruns_allowed(config, machine), 300u);
+    config.watchdog = 20ms;
+    EXPECT_EQ(TaskWatch::watchdog_of(config, machine), 20ms);
 }
 
 TEST_F(Watch, MissedReleasesCountInARowAndOnlyWhereTheyStopTheProgram) {
     for (const auto reaction : {OverrunReaction::stop_program, OverrunReaction::count, OverrunReaction::stop_machine}) {
         config.overrun = reaction;
         config.overruns_allowed = 2;
-        TaskWatch watch{config, 1ms};
+        TaskWatch watch{config, machine};
         watch.missed();
         watch.missed();
         watch.in_time();
