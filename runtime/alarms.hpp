@@ -32,6 +32,7 @@ enum class MachineAlarm : AlarmId {
     output_no_number = 0x6018,
     group_pulled = 0x6019,
     points_forced = 0x601A,
+    page_faults = 0x6020,
 };
 /// First number of input_faulty: what its terminal says.
 inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2, input_no_number = 3;
@@ -40,7 +41,7 @@ inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 23> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 24> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -231,6 +232,16 @@ inline constexpr std::array<AlarmInfo, 23> machine_alarms{{
      "有点被强制:{a} 个输入、{b} 个输出与机器和程序的实际状态不符",
      "Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)",
      "`taktwerk unforce`, or let who forced them end his session; `state` tells which points and who",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::page_faults),
+     "page_faults",
+     "The cycle had to wait for memory: {a} page faults in operation, {b} of them for a disk",
+     "周期等待内存:运行中发生 {a} 次缺页,其中 {b} 次需要读磁盘",
+     "A program called fork(), the kernel moves or merges pages of the machine, or memory is not locked and was read from the disk again",
+     "`taktwerk doctor` names what moves pages and takes it away; let programs start others with posix_spawn; lock memory "
+     "(`realtime.lock_memory`)",
      ResetRule::self_clearing,
      Reaction::warn,
      {}},

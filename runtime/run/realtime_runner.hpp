@@ -7,7 +7,7 @@
 //   programs   start() and stop() of programs: foreign code
 //   disk       positions, until they are on the disk
 //   modbus     one for each Modbus TCP device: connecting, asking, waiting for its answer
-//   watch      looks whether the cycle advances and whether an end that was asked for comes (end_watch.hpp)
+//   watch      looks whether the cycle advances, whether an end that was asked for comes (end_watch.hpp), and at the cycle's page faults (fault_watch.hpp)
 
 #include <atomic>
 #include <functional>
@@ -23,6 +23,7 @@
 #include "core/result.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/run/end_watch.hpp"
+#include "runtime/run/fault_watch.hpp"
 #include "runtime/run/in_step.hpp"
 #include "runtime/world/world.hpp"
 
@@ -79,6 +80,7 @@ private:
     RealtimeReport report_;
     CycleCounters counters_;
     EndWatch end_watch_;
+    FaultWatch fault_watch_;
     std::atomic<bool> stop_{false}, ready_{false}, cycle_running_{false}, all_home_{false};
     std::thread cycle_, watch_;
     std::vector<std::thread> tasks_, beside_;
