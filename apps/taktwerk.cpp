@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
     add_simulate(app, action);
     add_esi(app, action);
     add_doctor(app, action);
+    add_diag(app, action);
     add_docs(app, action);
     if (const auto wrong = misplaced(app, argc, argv)) {
         print_error(*wrong);

@@ -170,7 +170,7 @@ RealtimeReport prepare_process(const RealtimeRequest& request, CpuLatencyHold& h
                                 : Error{"realtime.kernel", "", "this kernel is not PREEMPT_RT", "Install linux-image-rt-amd64"},
          "single cycles may start late by several 100 us to milliseconds; fit for tests and cycles from about 10 ms");
     if (request.lock_memory)
-        note(report, "memory locked", lock_memory(),
+        note(report, std::string(memory_locked), lock_memory(),
              "a page that was swapped out or never touched delays a cycle by 10 us to milliseconds");
     if (request.hold_cpu_latency) {
         auto acquired = CpuLatencyHold::acquire();

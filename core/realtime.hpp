@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
@@ -20,6 +21,9 @@ struct RealtimeRequest {
     bool hold_cpu_latency = true;             ///< /dev/cpu_dma_latency: no deep sleep states
     std::size_t prefault_stack = 256 * 1024;  ///< bytes of stack touched beforehand; 0: none
 };
+
+/// RealtimeItem::what of RealtimeRequest::lock_memory.
+inline constexpr std::string_view memory_locked = "memory locked";
 
 /// One thing that was asked for, for the log, `monitor` and `--json`.
 struct RealtimeItem {

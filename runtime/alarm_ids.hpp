@@ -31,6 +31,7 @@ enum class MachineAlarm : AlarmId {
     points_forced = 0x601A,
     task_watchdog = 0x601B,
     task_late = 0x601C,
+    page_faults = 0x6020,
 };
 /// First number of input_faulty: what its terminal says.
 inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2, input_no_number = 3;

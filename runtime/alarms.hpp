@@ -9,7 +9,7 @@
 
 namespace taktwerk::runtime {
 
-inline constexpr std::array<AlarmInfo, 25> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 26> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -217,6 +217,16 @@ inline constexpr std::array<AlarmInfo, 25> machine_alarms{{
      "Shorten the task, raise `every`, or allow more (`overruns_allowed`, `overrun: count`); reset, then start the program. While the task "
      "still has not come back its program cannot be started: end the run and start it again",
      ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops it"},
+    {id(MachineAlarm::page_faults),
+     "page_faults",
+     "The cycle had to wait for memory: {a} page faults in operation, {b} of them for a disk",
+     "周期等待内存:运行中发生 {a} 次缺页,其中 {b} 次需要读磁盘",
+     "A program called fork(), the kernel moves or merges pages of the machine, or memory is not locked and was read from the disk again",
+     "`taktwerk doctor` names what moves pages and takes it away; let programs start others with posix_spawn; lock memory "
+     "(`realtime.lock_memory`)",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

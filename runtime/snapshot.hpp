@@ -48,6 +48,8 @@ struct CycleStatistics {
     Duration compute{}, compute_max{};    ///< steps 1 to 10
     std::uint64_t snapshots_dropped = 0;  ///< rows that a trace came too late for
     std::uint64_t commands_refused = 0;
+    std::uint64_t page_faults = 0;       ///< of the cycle's thread, from a second after the machine runs on; virtual time has none
+    std::uint64_t disk_page_faults = 0;  ///< those of them that waited for a disk
 };
 
 struct TaskStatistics {

@@ -1,14 +1,26 @@
 #include "apps/doctor/examine.hpp"
 
+#include <algorithm>
 #include <atomic>
+#include <memory>
 #include <thread>
+
+#include <fmt/format.h>
 
 #include "apps/doctor/findings.hpp"
 #include "apps/machine/running_machine.hpp"
 #include "ecat/transport/raw_socket.hpp"
+#include "hmi_bridge/socket/client.hpp"
 
 namespace taktwerk::apps {
 namespace {
+
+constexpr int below_machines = 70;  // 80 is the usual priority of a cycle
+
+bool machine_runs() {
+    const auto client = hmi::Client::connect("");
+    return client.ok() || client.error().code == "socket.ambiguous";
+}
 
 void judge(Examination& seen) {
     sort_by_cost(seen.findings);
@@ -45,6 +57,11 @@ Examination examine(const std::filesystem::path& root, const EthernetPorts& port
     if (!interface.empty()) {
         auto of_port = port_findings(port_facts(files, ports, interface), wanted);
         seen.findings.insert(seen.findings.end(), of_port.begin(), of_port.end());
+        // The master that is heard there is one of ours.
+        if (const auto machine = machine_on(interface, {}))
+            for (auto& finding : seen.findings)
+                if (finding.code == "port.other_master")
+                    finding = {"port.machine", Severity::good, 0, fmt::format("machine {} has {}", machine->name, interface), "", "", ""};
     }
     judge(seen);
     return seen;
@@ -55,6 +72,7 @@ void measure(Examination& seen, Duration lasts) {
     m.plan.interval = seen.wanted.cycle;
     m.plan.lasts = lasts;
     m.plan.cpu = seen.wanted.cpu;
+    if (machine_runs()) m.plan.priority = below_machines;
     SystemClock clock;
     std::unique_ptr<ecat::RawSocketTransport> bus;
     if (!seen.interface.empty()) {

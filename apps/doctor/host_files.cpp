@@ -19,7 +19,8 @@ std::optional<std::string> HostFiles::text(std::string_view path) const {
     if (!file) return std::nullopt;
     std::string all;
     char some[4096];
-    while (all.size() < most_bytes && (file.read(some, sizeof some) || file.gcount() > 0)) all.append(some, static_cast<std::size_t>(file.gcount()));
+    while (all.size() < most_bytes && (file.read(some, sizeof some) || file.gcount() > 0))
+        all.append(some, static_cast<std::size_t>(file.gcount()));
     if (file.bad()) return std::nullopt;  // some of /sys open and then refuse
     while (!all.empty() && (all.back() == '\n' || all.back() == ' ' || all.back() == '\0')) all.pop_back();
     return all;

@@ -35,6 +35,10 @@ void put_measured(std::string& text, const Examination& seen) {
         text += fmt::format("         {} frames to {} slaves and back: {}\n", m.trips->answered, m.trips->slaves,
                             figures("round trip", m.trips->took));
     if (!m.no_trips.empty()) text += fmt::format("         no round trips: {}\n", m.no_trips);
+    if (m.plan.priority < LatenessPlan{}.priority)
+        text +=
+            "         a machine runs here: measured below its priority, so that it is not held up; `taktwerk status` has its own "
+            "lateness\n";
     for (const auto& item : m.lateness.granted.items)
         if (!item.granted && item.what != "PREEMPT_RT kernel")
             text += fmt::format("         without {}: a machine would have to do without it as well\n", item.what);

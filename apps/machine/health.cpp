@@ -45,6 +45,7 @@ Health health_of(const Json& hello, const Json& told) {
     h.missed = statistics.value("missed_ticks", 0.0);
     h.lateness_max_us = statistics.value("lateness_max_ns", 0.0) / 1000;
     h.compute_max_us = statistics.value("compute_max_ns", 0.0) / 1000;
+    h.page_faults = statistics.value("page_faults", 0.0);
     for (const auto& axis : part(state, "axes", Json::array())) {
         ++h.axes;
         h.powered += axis.value("powered", false) ? 1 : 0;
@@ -74,8 +75,9 @@ std::string health_text(const Health& h) {
                             task.run_us, task.run_max_us);
     if (h.cycles > 0)
         text += fmt::format(
-            "  {:.0f} cycles, {:.0f} ticks missed, wake-up at most {:.0f} us late, computing at most {:.0f} us; {:.0f} frames lost\n",
-            h.cycles, h.missed, h.lateness_max_us, h.compute_max_us, h.frames_lost);
+            "  {:.0f} cycles, {:.0f} ticks missed, wake-up at most {:.0f} us late, computing at most {:.0f} us; {:.0f} frames lost; {:.0f} "
+            "page faults of the cycle\n",
+            h.cycles, h.missed, h.lateness_max_us, h.compute_max_us, h.frames_lost, h.page_faults);
     return text + fmt::format("  taktwerk {}, process {}, up {:.0f} s\n", h.version, h.process, h.uptime_s);
 }
 
@@ -94,6 +96,7 @@ Json health_json(const Health& h) {
               {"lateness_max_us", h.lateness_max_us},
               {"compute_max_us", h.compute_max_us},
               {"frames_lost", h.frames_lost},
+              {"page_faults", h.page_faults},
               {"version", h.version},
               {"pid", h.process},
               {"uptime_s", h.uptime_s}};

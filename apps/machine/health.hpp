@@ -14,7 +14,7 @@ struct Health {
     long long process = 0;
     double uptime_s = 0;
     std::size_t axes = 0, powered = 0, homed = 0;
-    double cycles = 0, missed = 0, lateness_max_us = 0, compute_max_us = 0, frames_lost = 0;
+    double cycles = 0, missed = 0, lateness_max_us = 0, compute_max_us = 0, frames_lost = 0, page_faults = 0;
     struct Listed {
         std::string source, name, text, reaction;
         bool standing = false;

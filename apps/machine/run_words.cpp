@@ -32,10 +32,10 @@ void print_summary(Machine& machine, const RunOptions& options, double machine_s
         put(fmt::format(
             "{{\"cycles\":{},\"missed\":{},\"lateness_max_us\":{:.1f},\"compute_p50_us\":{:.2f},\"compute_p99_us\":{:.2f},\"compute_max_"
             "us\":{:.2f},"
-            "\"frames_lost\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
+            "\"frames_lost\":{},\"page_faults\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
             s->statistics.cycles, s->statistics.missed_ticks, to_seconds(s->statistics.lateness_max) * 1e6,
             to_seconds(total.percentile(50)) * 1e6, to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6,
-            s->bus.frames_lost, machine_seconds, wall_seconds));
+            s->bus.frames_lost, s->statistics.page_faults, machine_seconds, wall_seconds));
         return;
     }
     std::string lines;
@@ -49,7 +49,9 @@ void print_summary(Machine& machine, const RunOptions& options, double machine_s
     if (options.virtual_time)
         say("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds,
             machine_seconds / std::max(wall_seconds, 1e-9));
-    else say("; wake-up at most {:.0f} us late\n", to_seconds(s->statistics.lateness_max) * 1e6);
+    else
+        say("; wake-up at most {:.0f} us late; {} page faults of the cycle\n", to_seconds(s->statistics.lateness_max) * 1e6,
+            s->statistics.page_faults);
     if (s->statistics.snapshots_dropped > 0) say("{} rows of the trace did not fit and are missing\n", s->statistics.snapshots_dropped);
     for (std::size_t i = 0; i < machine.layout().variables.size(); ++i) {
         const auto& v = machine.layout().variables[i];

@@ -223,7 +223,7 @@ void put_doubtful(JsonWriter& json, const std::vector<whole_point_v1_t>& inputs)
     json.close(']');
 }
 
-void put_statistics(JsonWriter& json, const whole_statistics_v1_t& cycle) {
+void put_statistics(JsonWriter& json, const whole_statistics_v2_t& cycle) {
     json.open("statistics", '{');
     json.field("cycles", cycle.cycles);
     json.field("overruns", cycle.overruns);
@@ -234,6 +234,8 @@ void put_statistics(JsonWriter& json, const whole_statistics_v1_t& cycle) {
     json.field("compute_max_ns", cycle.compute_max_ns);
     json.field("snapshots_dropped", cycle.snapshots_dropped);
     json.field("commands_refused", cycle.commands_refused);
+    json.field("page_faults", cycle.page_faults);
+    json.field("disk_page_faults", cycle.disk_page_faults);
     json.close('}');
 }
 
@@ -295,7 +297,7 @@ std::string alarms_text(const runtime::Snapshot& snapshot, const MachineLink& ma
 
 }  // namespace
 
-std::string state_json(const whole_state_v1_t& s) {
+std::string state_json(const whole_state_v2_t& s) {
     constexpr std::size_t of_an_axis = 2048, of_a_value = 96, of_the_rest = 8192;
     JsonWriter json(of_the_rest + s.axes.size() * of_an_axis +
                     (s.inputs.size() + s.outputs.size() + s.variables.size() + s.parameters.size() + s.slaves.size()) * of_a_value);
@@ -332,7 +334,7 @@ std::string state_json(const whole_state_v1_t& s) {
 }
 
 std::string state_json(const runtime::Snapshot& snapshot, const MachineLink& machine, const NameOfClient& who) {
-    whole_state_v1_t all{};
+    whole_state_v2_t all{};
     fill(all, snapshot, machine, who);
     return state_json(all);
 }

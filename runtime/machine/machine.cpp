@@ -117,6 +117,7 @@ StopLevels::Ticket Machine::request_shutdown() noexcept { return impl_->desk.req
 bool Machine::taken(StopLevels::Ticket ticket) const noexcept { return impl_->desk.levels().taken(ticket); }
 std::uint64_t Machine::levels_raised() const noexcept { return impl_->desk.levels().raised(); }
 bool Machine::shutdown_asked() const noexcept { return impl_->desk.shutdown_asked(); }
+void Machine::tell_page_faults(const FaultsSeen& seen) noexcept { impl_->supervisor.page_faults().tell(seen); }
 Duration Machine::longest_stop() const noexcept { return impl_->supervisor.longest_stop(); }
 Machine::Pulse Machine::pulse() const noexcept {
     return {impl_->pulse_cycles.load(std::memory_order_relaxed), impl_->programs.base_task_at_work()};

@@ -41,6 +41,7 @@ struct AlarmText {
 };
 
 class ReplayedInbox;
+struct FaultsSeen;
 
 /// Who calls a recorded machine: one thread for everything (virtual time), or the cycle's thread for cycles, service_bus(), arm(), start_bus() and
 /// stop_bus(), and any others for the rest (RealtimeRunner::record_in_step()).
@@ -161,6 +162,8 @@ public:
     /// Service side: parameters and services of an axis' drive, beside the cycle: read_parameter(), write_parameter(), start_service(),
     /// service_answer() and capabilities() alone are for callers from outside. nullptr: no such axis, or a virtual one.
     [[nodiscard]] axes::DrivePort* drive_port(std::size_t axis) noexcept;
+    /// One thread beside the cycle: page faults of the cycle's thread since the machine operates (runtime/run/fault_watch.hpp).
+    void tell_page_faults(const FaultsSeen& seen) noexcept;
     /// Service side: what a program threw when it stopped by itself; empty when it did not.
     [[nodiscard]] std::string program_fault(std::size_t program) const;
     [[nodiscard]] const ecat::Master& bus() const noexcept;

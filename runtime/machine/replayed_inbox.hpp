@@ -34,6 +34,10 @@ public:
         supervisor_.replay(says);
         return true;
     }
+    [[nodiscard]] bool put(const FaultsSeen& seen) noexcept {
+        supervisor_.page_faults().replay(seen);
+        return true;
+    }
     [[nodiscard]] bool put(const HookRecord& record) { return programs_.replay_hook(record.program, record.stop); }
     [[nodiscard]] bool put(const TaskTimesRecord& record) noexcept { return programs_.replay_times(record); }
     [[nodiscard]] bool put(const SlowRecord& record) noexcept {

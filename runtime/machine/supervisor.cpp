@@ -27,6 +27,7 @@ Supervisor::Supervisor(MachineBody& body, MachineDrives& drives, HotConnect& gro
       retain_(retain),
       emergency_inputs_(body, programs, desk),
       late_cycles_(body, programs),
+      page_faults_(body),
       drive_emergencies_(body, drives),
       before_fault_(body, drives),
       shutdown_(body, programs, desk),
@@ -38,6 +39,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     emergency_inputs_.watch();
     if (desk_.shutdown_taken()) body_.raise(MachineAlarm::stopped_by_signal, AlarmSource::machine, 0);
     late_cycles_.watch(tick);
+    page_faults_.watch();
     programs_.raise_alarms();
     raise_bus_alarms();
     drives_.serial().watch();

@@ -14,6 +14,7 @@
 #include "runtime/machine/machine_drives.hpp"
 #include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
+#include "runtime/machine/page_fault_alarm.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/machine/shutdown.hpp"
 #include "runtime/recording/inbox_record.hpp"
@@ -31,6 +32,8 @@ public:
 
     /// In the place of what the disk's thread says.
     void replay(const DiskSays& says) noexcept { replayed_disk_ = says; }
+
+    [[nodiscard]] PageFaultAlarm& page_faults() noexcept { return page_faults_; }
 
     /// Any thread.
     [[nodiscard]] const BeforeFault& before_fault() const noexcept { return before_fault_; }
@@ -59,6 +62,7 @@ private:
     DiskSays recorded_disk_;
     EmergencyInputs emergency_inputs_;
     LateCycles late_cycles_;
+    PageFaultAlarm page_faults_;
     DriveEmergencies drive_emergencies_;
     BeforeFault before_fault_;
     Shutdown shutdown_;

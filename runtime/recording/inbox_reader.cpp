@@ -210,6 +210,15 @@ std::optional<TaskTimesRecord> read_task_times(std::span<const std::byte> bytes)
     return in.ended(record);
 }
 
+std::optional<FaultsSeen> read_faults(std::span<const std::byte> bytes) {
+    Reading in{bytes};
+    FaultsSeen seen;
+    seen.minor = in.take<std::uint64_t>();
+    seen.major = in.take<std::uint64_t>();
+    in.flags<std::uint8_t>(seen.memory_locked);
+    return in.ended(seen);
+}
+
 std::optional<WireRecord> read_wire(std::span<const std::byte> bytes) {
     Reading in{bytes};
     WireRecord record;

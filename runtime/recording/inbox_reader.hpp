@@ -78,6 +78,7 @@ struct AxisSetpoint {
 [[nodiscard]] std::optional<HookRecord> read_hook(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<SlowRecord> read_slow(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<TaskTimesRecord> read_task_times(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<FaultsSeen> read_faults(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<WireRecord> read_wire(std::span<const std::byte> bytes);
 /// A name without folders.
 [[nodiscard]] std::optional<StartFileRecord> read_start_file(std::span<const std::byte> bytes);

@@ -19,6 +19,7 @@
 //   disk     u8 what its thread says of it, when it changes (see DiskSays)
 //   hook     u16 program, u8 whether it was stop() and not start(): that has run on a thread of its own, and the cycle takes note of it
 //   slow     u16 slower task, whose run on a thread of its own has ended
+//   faults   u64 page faults without and u64 with a disk in operation, u8 whether memory is locked; when they change
 
 #include <algorithm>
 #include <array>
@@ -40,7 +41,7 @@ namespace taktwerk::runtime {
 inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4, departure_channel = 5,
                                sample_channel = 6, modbus_request_channel = 7, modbus_word_channel = 8, level_channel = 9,
                                half_frame_channel = 10, refused_channel = 11, link_channel = 12, ring_channel = 13, disk_channel = 14,
-                               hook_channel = 22, slow_channel = 23;
+                               hook_channel = 22, slow_channel = 23, faults_channel = 25;
 
 namespace inbox_record {
 template <std::size_t Size>
@@ -185,6 +186,21 @@ inline void record_slow(Recorder& recorder, Instant at, std::uint16_t task) noex
     inbox_record::Bytes<2> bytes;
     bytes.put(task);
     recorder.append(slow_channel, at, bytes.all());
+}
+
+/// What a thread beside the cycle saw of the cycle's memory, since the machine operates.
+struct FaultsSeen {
+    std::uint64_t minor = 0, major = 0;  ///< without and with a disk
+    bool memory_locked = false;
+    friend bool operator==(const FaultsSeen&, const FaultsSeen&) = default;
+};
+
+inline void record_faults(Recorder& recorder, Instant at, const FaultsSeen& seen) noexcept {
+    inbox_record::Bytes<17> bytes;
+    bytes.put(seen.minor);
+    bytes.put(seen.major);
+    bytes.put(static_cast<std::uint8_t>(seen.memory_locked ? 1 : 0));
+    recorder.append(faults_channel, at, bytes.all());
 }
 
 }  // namespace taktwerk::runtime

@@ -1,5 +1,7 @@
 #include "runtime/run/realtime_runner.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/math.hpp"
@@ -20,7 +22,7 @@ constexpr Duration watch_period = std::chrono::milliseconds{20};
 }  // namespace
 
 RealtimeRunner::RealtimeRunner(Machine& machine, World* world)
-    : machine_(machine), world_(world), end_watch_(machine), tasks_(machine, clock_) {
+    : machine_(machine), world_(world), end_watch_(machine), fault_watch_(machine), tasks_(machine, clock_) {
     const auto& wanted = machine.config().realtime;
     request_.priority = wanted.priority > 0 ? std::optional<int>{wanted.priority} : std::nullopt;
     request_.cpus = wanted.cpus;
@@ -34,6 +36,7 @@ void RealtimeRunner::cycle_thread() {
     const CrashStack crash_stack;
     report_ = prepare_cycle_thread(request_);
     math::set_stepping_thread_float_environment();
+    fault_watch_.this_is_it();
     ready_.store(true, std::memory_order_release);
     CyclicConfig config;
     config.period = machine_.config().cycle;
@@ -79,12 +82,15 @@ void RealtimeRunner::watch_thread() {
         was_stuck = stuck.has_value();
         if (hopeless && !given_up && give_up) give_up(*hopeless);
         given_up = given_up || hopeless;
+        fault_watch_.look(clock_.now());
         clock_.sleep_until(clock_.now() + watch_period);
     }
 }
 
 Result<RealtimeReport> RealtimeRunner::start() {
     auto whole = prepare_process(request_, latency_);
+    fault_watch_.memory_is_locked(
+        std::any_of(whole.items.begin(), whole.items.end(), [](const auto& item) { return item.what == memory_locked && item.granted; }));
     machine_.signals().touch();  // where memory may not be locked, too
     cycle_running_.store(true, std::memory_order_release);
     cycle_ = std::thread{[this] { cycle_thread(); }};

@@ -7,8 +7,8 @@
 //   programs   start() and stop() of programs: foreign code
 //   disk       positions, until they are on the disk
 //   modbus     one for each Modbus TCP device: connecting, asking, waiting for its answer
-//   watch      looks whether the cycle advances, whether an end that was asked for comes (end_watch.hpp), whether a task computes without an end;
-//              its priority is right below the cycle's
+//   watch      looks whether the cycle advances, whether an end that was asked for comes (end_watch.hpp), whether a task computes without an end, and at
+//              the cycle's page faults (fault_watch.hpp); its priority is right below the cycle's
 
 #include <atomic>
 #include <functional>
@@ -24,6 +24,7 @@
 #include "core/result.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/run/end_watch.hpp"
+#include "runtime/run/fault_watch.hpp"
 #include "runtime/run/in_step.hpp"
 #include "runtime/run/task_threads.hpp"
 #include "runtime/world/world.hpp"
@@ -80,6 +81,7 @@ private:
     RealtimeReport report_;
     CycleCounters counters_;
     EndWatch end_watch_;
+    FaultWatch fault_watch_;
     std::atomic<bool> stop_{false}, ready_{false}, cycle_running_{false}, all_home_{false};
     std::thread cycle_, watch_;
     TaskThreads tasks_;

@@ -18,7 +18,7 @@ Json hello() {
 }
 Json state() {
     return Json::parse(R"({"phase":"running","mode":"automatic","simulated":false,"emergency_stop":false,
-        "bus":{"phase":"operational","frames_lost":0},"statistics":{"cycles":60000,"missed_ticks":1,"lateness_max_ns":45000,"compute_max_ns":80000},
+        "bus":{"phase":"operational","frames_lost":0},"statistics":{"cycles":60000,"missed_ticks":1,"lateness_max_ns":45000,"compute_max_ns":80000,"page_faults":7},
         "axes":[{"powered":true,"homed":true},{"powered":false,"homed":true}],"programs":[{"name":"cell","state":"running"}],
         "tasks":[{"name":"cell.main","releases":60000,"overruns":2,"run_ns":12000,"run_max_ns":40000}],
         "alarms":[{"source":"axis x","name":"following_warning","english":"w","reaction":"warn","standing":true}]})");
@@ -39,6 +39,8 @@ TEST(HealthOf, AMachineThatRunsIsWellAlsoWithAWarning) {
     EXPECT_EQ(json["lateness_max_us"], 45.0);
     EXPECT_EQ(json["tasks"][0]["name"], "cell.main");
     EXPECT_EQ(json["tasks"][0]["run_max_us"], 40.0);
+    EXPECT_THAT(health_text(h), HasSubstr("7 page faults of the cycle"));
+    EXPECT_EQ(json["page_faults"], 7);
 }
 
 TEST(HealthOf, WhatStopsSomethingIsNamed) {

@@ -26,6 +26,7 @@ const std::vector<Leave> large_classes{
 
 const std::vector<Leave> long_headers{
     {"axes/axis/error_texts.hpp", "", 283, "one table"},
+    {"runtime/alarms.hpp", "", 251, "one table"},
 };
 
 const std::vector<SourceFile>& all_floors() {

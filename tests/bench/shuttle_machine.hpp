@@ -103,13 +103,7 @@ public:
     [[nodiscard]] runtime::Machine& machine() noexcept { return *machine_; }
     [[nodiscard]] const BetweenCycles& wire() const noexcept { return wire_; }
 
-private:
-    static constexpr Duration period = std::chrono::milliseconds{1};
-
-    [[noreturn]] static void die(const Error& error) {
-        fmt::print(stderr, "{}\n", error.text());
-        std::exit(1);
-    }
+    /// Of that many axes, with their program.
     static runtime::MachineConfig configured(std::size_t axes) {
         auto config = runtime::testing::machine_config(axes);
         config.bus.sync0_shift = std::chrono::microseconds{950};  // the frames of 200 axes are through after 840 us
@@ -136,6 +130,13 @@ private:
         return config;
     }
 
+private:
+    static constexpr Duration period = std::chrono::milliseconds{1};
+
+    [[noreturn]] static void die(const Error& error) {
+        fmt::print(stderr, "{}\n", error.text());
+        std::exit(1);
+    }
     runtime::MachineConfig config_;
     Instant now_{std::chrono::seconds{1}};
     runtime::World world_;

@@ -103,6 +103,7 @@ void read_as_inbox(std::span<const std::byte> bytes) {
     same_again(bytes, read_hook(bytes), [&](Recorder& r, const HookRecord& v) { record_hook(r, at, v.program, v.stop); });
     same_again(bytes, read_slow(bytes), [&](Recorder& r, const SlowRecord& v) { record_slow(r, at, v.task); });
     same_again(bytes, read_task_times(bytes), [&](Recorder& r, const TaskTimesRecord& v) { record_task_times(r, at, v); });
+    same_again(bytes, read_faults(bytes), [&](Recorder& r, const FaultsSeen& v) { record_faults(r, at, v); });
     (void)read_hash(bytes);
     (void)read_link(bytes);
     (void)read_ring(bytes);

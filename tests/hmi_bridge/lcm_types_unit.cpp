@@ -23,6 +23,7 @@
 #include "taktwerk_lcm/machine_state_v1_t.hpp"
 #include "taktwerk_lcm/program_values_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v1_t.hpp"
+#include "taktwerk_lcm/whole_state_v2_t.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -57,7 +58,9 @@ TEST(LcmTypes, FingerprintsDoNotChange) {
         {"whole_program_v1_t", {whole_program_v1_t::getHash(), 0xea99b3b421c32f1eu}},
         {"whole_slave_v1_t", {whole_slave_v1_t::getHash(), 0xa3decc79206f3321u}},
         {"whole_state_v1_t", {whole_state_v1_t::getHash(), 0xf48ecc8775cb588eu}},
+        {"whole_state_v2_t", {whole_state_v2_t::getHash(), 0xaa5e1140b31fb16au}},
         {"whole_statistics_v1_t", {whole_statistics_v1_t::getHash(), 0x5b85a89c093cd5e5u}},
+        {"whole_statistics_v2_t", {whole_statistics_v2_t::getHash(), 0x366d4af8a7e70253u}},
         {"whole_task_v1_t", {whole_task_v1_t::getHash(), 0x00bc836482d1411fu}},
         {"whole_value_v1_t", {whole_value_v1_t::getHash(), 0xf053d7cc919c68f6u}},
     };

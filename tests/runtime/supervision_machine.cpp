@@ -197,6 +197,49 @@ TEST_F(Supervised, LateWakeUpsAreOneAlarmThatGoesByItself) {
     EXPECT_EQ(m().state().alarms[0].fact.a, 300.0);
 }
 
+// Where memory is locked a page fault in operation is nothing that may happen: one line for the operator, no reaction.
+TEST_F(Supervised, MemoryThatTheCycleWaitedForIsAWarningThatGoesByItself) {
+    moving();
+    m().machine->tell_page_faults({3, 0, true});
+    m().run(2s);
+    ASSERT_EQ(m().state().alarm_count, 1u) << m().alarms();
+    EXPECT_EQ(m().state().alarms[0].fact.id, id(MachineAlarm::page_faults));
+    EXPECT_EQ(m().state().alarms[0].fact.a, 3.0);
+    EXPECT_EQ(m().state().alarms[0].fact.b, 0.0);
+    EXPECT_EQ(m().state().alarms[0].reaction, Reaction::warn);
+    EXPECT_EQ(m().state().statistics.page_faults, 3u);
+    EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion);
+
+    m().machine->tell_page_faults({4, 2, true});  // three more, two of them from a disk, while the first are shown
+    m().run(4900ms);
+    ASSERT_EQ(m().state().alarm_count, 1u) << "it did not come and go " << m().alarms();
+    EXPECT_EQ(m().state().alarms[0].count, 1u);
+    EXPECT_EQ(m().state().alarms[0].fact.a, 6.0);
+    EXPECT_EQ(m().state().alarms[0].fact.b, 2.0);
+
+    m().run(200ms);
+    EXPECT_EQ(m().state().alarm_count, 0u) << m().alarms();
+    EXPECT_EQ(m().state().statistics.page_faults, 6u) << "counted they stay";
+    EXPECT_EQ(m().state().statistics.disk_page_faults, 2u);
+    m().machine->tell_page_faults({5, 2, true});  // another one tells its own
+    m().run(10ms);
+    ASSERT_EQ(m().state().alarm_count, 1u);
+    EXPECT_EQ(m().state().alarms[0].fact.a, 1.0);
+}
+
+TEST_F(Supervised, WithoutLockedMemoryOnlyAPageOfADiskIsAnAlarm) {
+    moving();
+    m().machine->tell_page_faults({1000, 0, false});
+    m().run(10ms);
+    EXPECT_EQ(m().state().alarm_count, 0u) << m().alarms();
+    EXPECT_EQ(m().state().statistics.page_faults, 1000u);
+    m().machine->tell_page_faults({1001, 1, false});
+    m().run(10ms);
+    ASSERT_EQ(m().state().alarm_count, 1u);
+    EXPECT_EQ(m().state().alarms[0].fact.a, 1.0);
+    EXPECT_EQ(m().state().alarms[0].fact.b, 1.0);
+}
+
 TEST_F(Supervised, TheRunEndsAlthoughADriveDoesNotAnswer) {
     moving();
     m().world.set_slave_power("x_drive", false);

@@ -32,7 +32,9 @@
 #include "taktwerk_lcm/whole_program_v1_t.hpp"
 #include "taktwerk_lcm/whole_slave_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v1_t.hpp"
+#include "taktwerk_lcm/whole_state_v2_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v1_t.hpp"
+#include "taktwerk_lcm/whole_statistics_v2_t.hpp"
 #include "taktwerk_lcm/whole_task_v1_t.hpp"
 #include "taktwerk_lcm/whole_value_v1_t.hpp"
 
@@ -75,7 +77,7 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
         EXPECT_EQ(*made, static_cast<std::uint64_t>(generated)) << name;
         EXPECT_EQ(ours().find(*made), &type(name));
     };
-    EXPECT_EQ(ours().types().size(), 26u) << "a new type: a line here";
+    EXPECT_EQ(ours().types().size(), 28u) << "a new type: a line here";
     expect("acknowledge_v1_t", acknowledge_v1_t::getHash());
     expect("alarm_list_v1_t", alarm_list_v1_t::getHash());
     expect("alarm_v1_t", alarm_v1_t::getHash());
@@ -99,7 +101,9 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
     expect("whole_program_v1_t", whole_program_v1_t::getHash());
     expect("whole_slave_v1_t", whole_slave_v1_t::getHash());
     expect("whole_state_v1_t", whole_state_v1_t::getHash());
+    expect("whole_state_v2_t", whole_state_v2_t::getHash());
     expect("whole_statistics_v1_t", whole_statistics_v1_t::getHash());
+    expect("whole_statistics_v2_t", whole_statistics_v2_t::getHash());
     expect("whole_task_v1_t", whole_task_v1_t::getHash());
     expect("whole_value_v1_t", whole_value_v1_t::getHash());
 }

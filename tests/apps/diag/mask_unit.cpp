@@ -1,0 +1,68 @@
+// Secrets do not leave the house, and nothing else is taken away.
+#include "apps/diag/mask.hpp"
+
+#include <gmock/gmock.h>
+
+namespace taktwerk::apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+TEST(Mask, ValuesOfSecretKeysAreGoneInEachWayToWriteThem) {
+    for (const auto* line : {"password: hunter2", "  mqtt_password: \"hunter2\"", "Password:hunter2", "\"api_token\": \"hunter2\",",
+                             "{user: plc, passwd: hunter2, port: 1883}", "psk='hunter2'", "taktwerk x --password hunter2 --json",
+                             "client-secret = hunter2", "password_hash: hunter2", "- secret: hunter2", "private_key: hunter2"}) {
+        const auto clean = masked(line);
+        EXPECT_THAT(clean.text, Not(HasSubstr("hunter2"))) << line;
+        EXPECT_THAT(clean.text, HasSubstr(std::string(mask))) << line;
+        ASSERT_EQ(clean.where.size(), 1u) << line;
+        EXPECT_THAT(clean.where[0], Not(HasSubstr("hunter2")));
+    }
+}
+
+TEST(Mask, WhatStandsBesideItStays) {
+    EXPECT_EQ(masked("{user: plc, password: hunter2, port: 1883}").text, "{user: plc, password: <masked>, port: 1883}");
+    EXPECT_EQ(masked("a: 1\npassword: \"x y\"  # of the broker\nb: 2\n").text, "a: 1\npassword: \"<masked>\"  # of the broker\nb: 2\n");
+    EXPECT_THAT(masked("a: 1\npassword: x\n").where, ElementsAre("line 2: password"));
+}
+
+TEST(Mask, AUserInAnAddressLosesThePasswordAlone) {
+    const auto clean = masked("url: mqtt://plc:hunter2@broker:1883/x\n");
+    EXPECT_EQ(clean.text, "url: mqtt://plc:<masked>@broker:1883/x\n");
+    EXPECT_EQ(clean.where.size(), 1u);
+    EXPECT_EQ(masked("lcm: udpm://239.255.76.67:7667?ttl=0").text, "lcm: udpm://239.255.76.67:7667?ttl=0");
+}
+
+TEST(Mask, TheLinesOfABlockAreMaskedUntilItEnds) {
+    EXPECT_EQ(masked("tls:\n  private_key: |\n    AAAA\n\n    BBBB\n  port: 8883\n").text,
+              "tls:\n  private_key: |\n    <masked>\n\n    <masked>\n  port: 8883\n");
+}
+
+TEST(Mask, OrdinaryTextIsLeftAsItIs) {
+    for (const auto* text :
+         {"", "\n", "name: cell\naxes:\n  - name: x\n", "# no passwords here", "the password of the drive is asked for", "monkey: 7",
+          "keyboard: de", "tokenizer: on", "secretary: Li", "LCM knows no users and no passwords", "0x1C12: 1", "a\r\nb\r\n"}) {
+        const auto clean = masked(text);
+        EXPECT_EQ(clean.text, text);
+        EXPECT_THAT(clean.where, IsEmpty()) << text;
+    }
+}
+
+TEST(Mask, TwiceIsAsOnce) {
+    const auto once = masked("password: hunter2\nurl: http://a:b@c\n");
+    const auto twice = masked(once.text);
+    EXPECT_EQ(twice.text, once.text);
+}
+
+TEST(Mask, ALineThatIsLongerThanAnybodyReadsIsMaskedWhole) {
+    const std::string filler(10'000, 'x');
+    EXPECT_EQ(masked(filler + " password: hunter2").text, std::string(mask));
+    EXPECT_EQ(masked("password: hunter2 " + filler).text, std::string(mask));
+    EXPECT_EQ(masked(filler).text, filler);
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
