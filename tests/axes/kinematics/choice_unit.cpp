@@ -71,6 +71,9 @@ TEST(KinematicChoice, TurnsAreAPartOfThePose) {
     const Pose pose = abb.forward(there, {}).pose;
 
     expect_axes(abb.inverse(pose, {}, c, {}).axes, there);
+    // The flipped wrist, whose joint 4 is half a turn from the other way's: turn 0 is what it says.
+    const Joints flipped = degrees({10, 20, 30, -100, -50, -170});
+    expect_axes(abb.inverse(abb.forward(flipped, {}).pose, {}, abb.configuration(flipped), {}).axes, flipped);
     Configuration other = c;
     other.turns[5] = -2;
     expect_axes(abb.inverse(pose, {}, other, {}).axes, degrees({10, 20, 30, 40, 50, 40 - 720}));
