@@ -6,7 +6,7 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double turn_back = 1e-2;      // |t0 + t1| below which the path turns back: no curve is passed well
+constexpr double turn_back = 0.35;      // |t0 + t1| below which (160 degrees) the path turns back: such a curve is passed at a crawl
 constexpr double least_length = 1e-12;  // of a blend, as part of its elements
 
 /// How much of the parameter one unit of length is worth: near a straight line the curve's speed is constant with 2; a sharper corner is

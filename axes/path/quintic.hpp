@@ -26,8 +26,8 @@ public:
     /// u at s, and s at u: each is the other's inverse within 1e-12 of the length.
     [[nodiscard]] double parameter_at(double s) const noexcept;
     [[nodiscard]] double length_to(double u) const noexcept;
-    /// Whether its speed |dx/du| stays above a thousandth of its length: otherwise it has a cusp and cannot be passed.
-    [[nodiscard]] bool smooth() const noexcept { return slowest_ > 1e-3 * length(); }
+    /// Whether its speed |dx/du| stays above a fiftieth of its length: otherwise it has nearly a cusp.
+    [[nodiscard]] bool smooth() const noexcept { return slowest_ > 0.02 * length(); }
 
     /// The length around s on which its direction changes little: a part of its radius of curvature, and of itself.
     [[nodiscard]] double feature(double s) const noexcept;

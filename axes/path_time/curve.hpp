@@ -54,6 +54,12 @@ public:
     /// The first place behind `s` at which q''' or a limit jumps; end() where there is none.
     [[nodiscard]] virtual double next_break(double s) const noexcept = 0;
 
+    /// A number of the part that holds s, if s is no break: it comes back with every set-point, so that nobody searches, or takes the wrong side of a break.
+    [[nodiscard]] virtual std::uint32_t part_at(double s) const noexcept = 0;
+
+    /// The first place behind `s` that can only be passed at rest; end() where there is none.
+    [[nodiscard]] virtual double next_stop(double s) const noexcept = 0;
+
     /// The length around s on which the derivatives change little: how finely time has to be planned there. Infinite where they are constant.
     [[nodiscard]] virtual double feature(double s, CurveSide side) const noexcept = 0;
 };

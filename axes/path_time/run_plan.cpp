@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "axes/path_time/along_limits.hpp"
 #include "core/math.hpp"
 
 namespace taktwerk::axes {
@@ -14,26 +15,9 @@ constexpr int stations_between = 16;  // of a span that bends
 constexpr int most_of_run = 24;       // a cell is at most this part of a run
 constexpr double rest_share = 0.2;    // of the way with jerk that the piece at rest takes
 constexpr int rounds_at_most = 6;
-constexpr int verified_points = 8;  // per cell
+constexpr double slow_share = 0.02;  // of v2: what goes on where a former plan stopped
+constexpr int verified_points = 8;   // per cell
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// Velocity, acceleration, jerk along the curve that its axes and itself allow at a point while it runs straight.
-struct AlongLimits {
-    double velocity, acceleration, deceleration, jerk;
-};
-
-AlongLimits along(const CurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor) {
-    AlongLimits l{p.path.velocity * velocity_factor, p.path.acceleration, p.path.deceleration, p.path.jerk};
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-        const double q = std::fabs(p.first[i]);
-        if (q < 1e-12) continue;
-        l.velocity = std::min(l.velocity, limits[i].velocity / q);
-        l.acceleration = std::min(l.acceleration, limits[i].acceleration / q);
-        l.deceleration = std::min(l.deceleration, limits[i].acceleration / q);
-        l.jerk = std::min(l.jerk, limits[i].jerk / q);
-    }
-    return l;
-}
 
 /// The greatest use of each limit by equally spaced samples, with what a parabola through three of them reaches in between.
 class PeakUse {
@@ -55,8 +39,8 @@ public:
             double& peak = peak_[i % 3];
             peak = std::max(peak, std::fabs(now_[i]));
             if (seen_ < 2) continue;
-            const double most = std::max({std::fabs(now_[i]), std::fabs(one_[i]), std::fabs(two_[i])});
-            peak = std::max(peak, most + std::fabs(now_[i] - 2 * one_[i] + two_[i]) / 8);
+            const double bend = now_[i] - 2 * one_[i] + two_[i], slope = now_[i] - two_[i];
+            if (std::fabs(slope) < 2.2 * std::fabs(bend)) peak = std::max(peak, std::fabs(one_[i] - slope * slope / (8 * bend)));
         }
         two_ = one_;
         one_ = now_;
@@ -71,6 +55,9 @@ private:
     Values now_{}, one_{}, two_{};
     std::array<double, 3> peak_{};
 };
+
+/// What the path's velocity limit is times where nothing may cross it.
+double hard_factor(const RunTask& task) { return task.velocity > 0 ? 1 : task.velocity_factor; }
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -128,9 +115,13 @@ void RunPlanner::add_stations(double largest) {
         const bool bends = curve_->feature(a + length / 2, CurveSide::after) < length;
         const int between = bends ? stations_between : 1;
         for (int k = 1; k <= between; ++k) {
-            const double s = k == between ? breaks_[i + 1] : a + length * k / between;
+            const double s = k == between ? breaks_[i + 1] : a + length * k / between, gap = length / between;
+            double least = std::min({largest, length, curve_->feature(s, CurveSide::before)});
+            if (bends)  // a narrow place between two stations
+                for (const double part : {0.2, 0.4, 0.6, 0.8}) least = std::min(least, curve_->feature(s - part * gap, CurveSide::after));
+            sizes_.back() = std::min(sizes_.back(), std::max(least, sizes_.back() / 16));
             stations_.push_back(s);
-            sizes_.push_back(std::min({largest, length, curve_->feature(s, CurveSide::before)}));
+            sizes_.push_back(least);
         }
     }
 }
@@ -150,7 +141,7 @@ void RunPlanner::make_nodes(const RunTask& task) {
     add_breaks(task);
     const double whole = task.to - task.from;
     const auto rest_length = [&](double at, CurveSide side, double room) {
-        const AlongLimits l = along(curve_->at(at, side), limits_, task.velocity_factor);
+        const AlongLimits l = along_limits(curve_->at(at, side), limits_, task.velocity_factor);
         double way = whole / 12;  // a motion of jerk alone turns from speeding up to less of it there
         const double a = std::min(l.acceleration, l.deceleration);
         way = std::min(way, a * a * a / (6 * l.jerk * l.jerk));
@@ -165,6 +156,8 @@ void RunPlanner::make_nodes(const RunTask& task) {
     end_.rest_length = rest_length(task.to, CurveSide::before, breaks_.back() - breaks_[breaks_.size() - 2]);
 
     add_stations(whole / most_of_run);
+    // A quadratic with this beginning has to stay positive over the first cell.
+    if (!from_rest && start_.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start_.square / -start_.slope);
     if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start_.rest_length);
     sizes_.back() = std::min(sizes_.back(), growth * end_.rest_length);
     const std::size_t last = stations_.size() - 1;
@@ -195,7 +188,7 @@ void RunPlanner::make_nodes(const RunTask& task) {
 /// grow with the powers 1/2, 1 and 3/2 of it, so one motion says it for all.
 double RunPlanner::rest_square(double at, double length, bool begins, double velocity_factor) const {
     LimitUse use;
-    constexpr int samples = 16;
+    constexpr int samples = 24;
     for (int i = 0; i <= samples; ++i) {
         const double time = static_cast<double>(i) / samples, x = time * time * time;
         const double s = begins ? at + x * length : at - x * length;
@@ -203,7 +196,8 @@ double RunPlanner::rest_square(double at, double length, bool begins, double vel
         const PathMotion m{s, time * time, sign * 2 / (3 * length) * time, 2 / (9 * length * length)};
         use.widen(limit_use(curve_->at(s, begins ? CurveSide::after : CurveSide::before), limits_, velocity_factor, m));
     }
-    constexpr double margin = 1 - 1e-4;
+    // Between the samples, where the curve bends.
+    const double margin = curve_->feature(at, begins ? CurveSide::after : CurveSide::before) < infinite ? 1 - 3e-3 : 1 - 1e-4;
     return margin * std::min({1 / (use.velocity * use.velocity), 1 / use.acceleration, 1 / two_thirds(use.jerk)});
 }
 
@@ -216,22 +210,30 @@ void RunPlanner::add_cell(int cell, const RunTask& task) {
         const CurvePoint p = curve_->at(k == 2 ? nodes_[c + 1] : begin + x * length, k == 2 ? CurveSide::before : CurveSide::after);
         problem_.add_point({cell, x, length * (k == 1 ? 4 : 1) / 6});
         // With the end of the cell before, unless something jumps here.
-        const bool shared = k == 0 && cell > 0 && !std::binary_search(breaks_.begin(), breaks_.end(), begin);
-        const AlongLimits l = along(p, limits_, task.velocity_factor);
+        // The state at the beginning, and with it the middle of the first cell, are as they are.
+        const bool given = cell == 0 && k == 0 && start_.rest_length <= 0, given_middle = cell == 0 && k == 1 && start_.rest_length <= 0;
+        const bool shared = given || (k == 0 && cell > 0 && !std::binary_search(breaks_.begin(), breaks_.end(), begin));
+        const AlongLimits l = along_limits(p, limits_, hard_factor(task));
         const std::size_t beside =
             k == 0 ? std::max<std::size_t>(c, 1) - 1 : std::min(c + static_cast<std::size_t>(k) / 2, cell_limits_.size() - 1);
         const CellLimits& other = cell_limits_[beside];
         const CellLimits share{std::min(own.velocity, other.velocity), std::min(own.acceleration, other.acceleration),
                                std::min(own.jerk, other.jerk)};
         if (!shared) {
+            // Above a lowered velocity factor a moving beginning may be; it is left as soon as the limits allow.
+            const bool soft = start_.rest_length <= 0 && task.velocity_factor < 1;
+            if (soft) {
+                const double wanted = p.path.velocity * task.velocity_factor;
+                if (wanted < infinite) problem_.add_soft_cap(wanted * wanted);
+            }
             double cap = l.velocity * share.velocity;
             cap *= cap;
             if (cell == 0 && k == 0 && start_.rest_length > 0)
-                cap = std::min(cap, rest_square(task.from, start_.rest_length, true, task.velocity_factor));
+                cap = std::min(cap, rest_square(task.from, start_.rest_length, true, hard_factor(task)));
             if (cell + 1 == problem_.cells() && k == 2)
-                cap = std::min(cap, rest_square(task.to, end_.rest_length, false, task.velocity_factor));
+                cap = std::min(cap, rest_square(task.to, end_.rest_length, false, hard_factor(task)));
             // The middle as Bernstein's coefficient: what it may be, v2 on the cell may be.
-            if (cap < infinite) k == 1 ? problem_.add_cap_on_middle(cap) : problem_.add_cap(cap);
+            if (cap < infinite && !given_middle) k == 1 ? problem_.add_cap_on_middle(cap) : problem_.add_cap(cap);
         }
         double bent = 0;  // how much of the limits the curvature takes
         for (std::size_t i = 0; i < limits_.size(); ++i)
@@ -266,11 +268,10 @@ void RunPlanner::make_problem(const RunTask& task) {
 void RunPlanner::first_guess(const RunTask& task) {
     const std::size_t n = nodes_.size() - 1;
     middles_.assign(n, 0);
-    double from_rest = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const double s = (nodes_[i] + nodes_[i + 1]) / 2;
         const CurvePoint p = curve_->at(s, CurveSide::after);
-        const AlongLimits l = along(p, limits_, task.velocity_factor);
+        const AlongLimits l = along_limits(p, limits_, task.velocity_factor);
         double cap = l.velocity * l.velocity;
         for (std::size_t k = 0; k < limits_.size(); ++k) {
             cap = std::min(cap, limits_[k].acceleration / std::max(std::fabs(p.second[k]), 1e-300));
@@ -279,19 +280,57 @@ void RunPlanner::first_guess(const RunTask& task) {
         // at constant jerk from rest: v^3 = 4.5 j s^2
         if (start_.rest_length > 0) cap = std::min(cap, two_thirds(4.5 * l.jerk * (s - task.from) * (s - task.from)));
         cap = std::min(cap, two_thirds(4.5 * l.jerk * (task.to - s) * (task.to - s)));
-        const double before = i > 0 ? middles_[i - 1] : from_rest;
+        const double before = i > 0 ? middles_[i - 1] : 0;
         const double way = i > 0 ? (nodes_[i + 1] - nodes_[i - 1]) / 2 : (nodes_[1] - nodes_[0]) / 2 + start_.rest_length;
-        if (start_.rest_length > 0 || i > 0) cap = std::min(cap, before + 1.6 * l.acceleration * way);
+        cap = std::min(cap, before + 1.6 * l.acceleration * way);
         middles_[i] = cap;
     }
     for (std::size_t i = n; i-- > 0;) {
         const double s = (nodes_[i] + nodes_[i + 1]) / 2;
-        const AlongLimits l = along(curve_->at(s, CurveSide::after), limits_, task.velocity_factor);
+        const AlongLimits l = along_limits(curve_->at(s, CurveSide::after), limits_, task.velocity_factor);
         const double behind = i + 1 < n ? middles_[i + 1] : 0;
         const double way = i + 1 < n ? (nodes_[i + 2] - nodes_[i]) / 2 : (nodes_[n] - nodes_[n - 1]) / 2 + end_.rest_length;
         middles_[i] = std::min(middles_[i], behind + 1.6 * l.deceleration * way);
     }
     for (double& m : middles_) m *= 0.5;
+}
+
+/// From a moving state: the cells of the former plan as long as it does not brake for its end for good, and its v2 as the first guess. Where
+/// that comes near rest but the path goes on, a slow motion that keeps every limit goes on instead.
+void RunPlanner::take_over(const RunTask& task, const RunShape& former) {
+    const auto begin = std::lower_bound(former.nodes.begin(), former.nodes.end(), task.from - 1e-12 * std::fabs(task.to));
+    const auto from = static_cast<std::size_t>(begin - former.nodes.begin());
+    if (begin == former.nodes.end()) return;
+    const bool same_end = std::fabs(task.to - former.end) < 1e-9 * (task.to - task.from);
+    std::size_t kept = former.nodes.size() - 1;
+    if (!same_end) {
+        while (kept > from && (former.squares[kept] <= former.squares[kept - 1] || former.nodes[kept] > nodes_.back())) --kept;
+    } else {
+        end_.rest_length = task.to - former.nodes.back();
+    }
+    std::vector<double> nodes(former.nodes.begin() + static_cast<std::ptrdiff_t>(from),
+                              former.nodes.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+    nodes.front() = task.from;
+    if (!same_end)
+        for (const double node : nodes_)
+            if (node > nodes.back() + 1e-9 * (task.to - task.from)) nodes.push_back(node);
+    nodes_.swap(nodes);
+    cell_limits_.assign(nodes_.size() - 1, untouched);
+
+    // Slow enough for everything, as from rest.
+    first_guess(task);
+    std::size_t cell = from;
+    const auto former_square = [&](double s) {
+        while (cell + 1 < former.middles.size() && former.nodes[cell + 1] < s) ++cell;
+        if (s > former.nodes.back() + 1e-12 * std::fabs(task.to)) return 0.0;
+        const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
+        return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
+    };
+    for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
+        const double first = former_square(nodes_[i]), middle = former_square((nodes_[i] + nodes_[i + 1]) / 2),
+                     last = former_square(nodes_[i + 1]);
+        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+    }
 }
 
 LimitUse RunPlanner::use_of_cell(int cell, const RunTask& task) const {
@@ -307,7 +346,7 @@ LimitUse RunPlanner::use_of_cell(int cell, const RunTask& task) const {
         m.velocity = std::sqrt(square);
         m.acceleration = (y * (middle - first) + x * (last - middle)) / length;
         m.jerk = (first - 2 * middle + last) / (length * length) * m.velocity;
-        peaks.look(curve_->at(m.s, k == verified_points ? CurveSide::before : CurveSide::after), limits_, task.velocity_factor, m);
+        peaks.look(curve_->at(m.s, k == verified_points ? CurveSide::before : CurveSide::after), limits_, hard_factor(task), m);
     }
     return peaks.use();
 }
@@ -368,6 +407,7 @@ void RunPlanner::make_pieces(RunPlan& out) {
     double time = 0;
     const auto add = [&](TimePiece p) {
         p.begin_time = time;
+        p.part = curve_->part_at(p.begin + p.length / 2);
         time += p.duration;
         out.pieces.push_back(p);
     };
@@ -381,9 +421,15 @@ void RunPlanner::make_pieces(RunPlan& out) {
     }
     add(TimePiece::rest(TimePiece::Kind::to_rest, nodes_.back(), end_.rest_length, problem_.node(n, middles_)));
     out.duration = time;
+    out.shape.end = nodes_.back() + end_.rest_length;
+    out.shape.nodes = nodes_;
+    out.shape.middles = middles_;
+    out.shape.squares.clear();
+    for (int i = 0; i <= n; ++i) out.shape.squares.push_back(problem_.node(i, middles_));
 }
 
-void RunPlanner::plan(const Curve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out) {
+void RunPlanner::plan(const Curve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
+                      const RunShape* former) {
     curve_ = &curve;
     limits_ = limits;
     out.found = false;
@@ -391,7 +437,8 @@ void RunPlanner::plan(const Curve& curve, std::span<const PathAxisLimits> limits
     make_nodes(task);
     out.cells = static_cast<int>(nodes_.size()) - 1;
     cell_limits_.assign(nodes_.size() - 1, untouched);
-    first_guess(task);
+    if (former != nullptr && start_.rest_length <= 0) take_over(task, *former);
+    else first_guess(task);
     while (out.rounds < rounds_at_most && !out.found) {
         ++out.rounds;
         make_problem(task);

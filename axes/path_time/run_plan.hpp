@@ -36,8 +36,17 @@ struct RunTask {
     double velocity_factor = 1;
 };
 
+/// v2(s) of a plan as it was optimised: where a later plan begins to search, and which cells it takes over.
+struct RunShape {
+    std::vector<double> nodes;    ///< between the cells; the pieces at rest lie outside
+    std::vector<double> squares;  ///< v2 at the nodes
+    std::vector<double> middles;  ///< Bernstein's middle coefficient of each cell
+    double end = 0;               ///< where it comes to rest
+};
+
 struct RunPlan {
     std::vector<TimePiece> pieces;  ///< times from 0
+    RunShape shape;
     double duration = 0;
     LimitUse use;        ///< as verified
     bool found = false;  ///< otherwise the pieces are not to be run
@@ -48,8 +57,10 @@ struct RunPlan {
 
 class RunPlanner {
 public:
-    /// Fastest along the curve. `limits`: one per axis of the curve.
-    void plan(const Curve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out);
+    /// Fastest along the curve. `limits`: one per axis of the curve. From a moving state: `former` is the plan that has this state at one of its
+    /// nodes; it is where the search begins. Not found: the state cannot be left better than the former plan does, which goes on.
+    void plan(const Curve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
+              const RunShape* former = nullptr);
 
 private:
     struct CellLimits {
@@ -65,6 +76,7 @@ private:
     void make_problem(const RunTask& task);
     void add_cell(int cell, const RunTask& task);
     void first_guess(const RunTask& task);
+    void take_over(const RunTask& task, const RunShape& former);
     LimitUse verify(const RunTask& task, int round);
     void split_cells();
     void slow_down(const LimitUse& use);

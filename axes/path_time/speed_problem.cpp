@@ -10,6 +10,8 @@ namespace {
 
 constexpr int max_steps = 80;
 constexpr double to_the_boundary = 0.95;  // of the way that a step may go towards it
+constexpr double inside_first = 10;       // gap while a bound is relaxed: the goal counts a tenth of it
+constexpr double room_beyond = 0.1;       // of a bound that is relaxed
 constexpr double settled_gap = 3e-4;      // of the goal: what is left to gain
 
 }  // namespace
@@ -88,7 +90,7 @@ void SpeedProblem::add_row(const SpeedRow& row, Bound bound) {
     ++p.rows;
 }
 
-void SpeedProblem::add_cap(double square) { add_row({1 / square, 0, 0, 1, 0}, Bound::cap); }
+void SpeedProblem::add_cap(double square, Bound bound) { add_row({1 / square, 0, 0, 1, 0}, bound); }
 
 void SpeedProblem::add_cap_on_middle(double square) {
     add_cap(square);
@@ -99,78 +101,87 @@ void SpeedProblem::look(const std::vector<double>& d) {
     for (Point& p : points_) {
         p.v2 = value(p.square, p.cell, d);
         p.over_v = 1 / std::sqrt(p.v2);
+        for (int i = 0; i < p.rows; ++i) {
+            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
+            row.value = value(row.l, p.cell, d);
+        }
     }
 }
 
-double SpeedProblem::residual(const Row& row, const Point& point, bool up, double l) const noexcept {
-    const double bound = up ? row.above : row.below;
-    return (row.bound == Bound::over_velocity ? bound * point.over_v : bound) - (up ? l : -l);
-}
-
-void SpeedProblem::start_slacks(const std::vector<double>& d, double mu) {
+/// Where the present v2 crosses a bound, the bound is put a little beyond it, and never further out again: so every iterate is inside, and
+/// what is inside all true bounds once stays there.
+void SpeedProblem::relax(Room room) {
+    feasible_ = true;
     for (const Point& p : points_)
         for (int i = 0; i < p.rows; ++i) {
             Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double l = value(row.l, p.cell, d);
-            const double size = row.bound == Bound::over_velocity ? p.over_v : 1;
-            row.s_up = std::max(residual(row, p, true, l), 0.05 * row.above * size);
-            row.z_up = mu / row.s_up;
-            if (row.bound == Bound::cap) continue;
-            row.s_down = std::max(residual(row, p, false, l), 0.05 * row.below * size);
-            row.z_down = mu / row.s_down;
+            const double over_size = row.bound == Bound::over_velocity ? 1 / p.over_v : 1;
+            const auto side = [&](Side& x, double bound, double sign) {
+                const double used = sign * row.value * over_size;
+                const double wanted = used < bound * (1 - 1e-7) ? bound : used + room_beyond * std::max(bound, used);
+                x.bound = room == Room::first ? wanted : std::min(x.bound, wanted);
+                x.s = std::max((x.bound - used) / over_size, 1e-9 * x.bound / over_size);
+                if (row.bound != Bound::soft_cap) feasible_ = feasible_ && x.bound <= bound;
+            };
+            side(row.up, row.above, 1);
+            if (!one_sided(row)) side(row.down, row.below, -1);
         }
 }
 
-/// The equations of one step. Returns nothing of use but the work: band_ and right_.
-double SpeedProblem::assemble(double mu, SpeedGoal goal) {
+/// Slacks as they are, multipliers on the central path of mu.
+void SpeedProblem::center(double mu) {
+    for (const Point& p : points_)
+        for (int i = 0; i < p.rows; ++i) {
+            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
+            const double size = row.bound == Bound::over_velocity ? p.over_v : 1;
+            const auto side = [&](Side& x, double sign) {
+                x.s = std::max(x.bound * size - sign * row.value, 1e-9 * x.bound * size);
+                x.z = mu / x.s;
+            };
+            side(row.up, 1);
+            if (!one_sided(row)) side(row.down, -1);
+        }
+}
+
+/// The equations of one step: band_ and right_.
+void SpeedProblem::assemble(double mu, SpeedGoal goal) {
     std::fill(band_.begin(), band_.end(), 0);
     std::fill(right_.begin(), right_.end(), 0);
     const int n = cells();
-    double worst = 0;
     for (const Point& p : points_) {
         double m00 = 0, m01 = 0, m02 = 0, m11 = 0, m12 = 0, m22 = 0, f0 = 0, f1 = 0, f2 = 0;
-        const auto add = [&](const double* g, double weight, double force) {
-            const double w0 = weight * g[0], w1 = weight * g[1], w2 = weight * g[2];
-            m00 += w0 * g[0];
-            m01 += w0 * g[1];
-            m02 += w0 * g[2];
-            m11 += w1 * g[1];
-            m12 += w1 * g[2];
-            m22 += w2 * g[2];
-            f0 += force * g[0];
-            f1 += force * g[1];
-            f2 += force * g[2];
+        const auto add = [&](double g0, double g1, double g2, double weight, double force) {
+            const double w0 = weight * g0, w1 = weight * g1, w2 = weight * g2;
+            m00 += w0 * g0;
+            m01 += w0 * g1;
+            m02 += w0 * g2;
+            m11 += w1 * g1;
+            m12 += w1 * g2;
+            m22 += w2 * g2;
+            f0 += force * g0;
+            f1 += force * g1;
+            f2 += force * g2;
         };
         const double cube = p.over_v / p.v2;  // v^-3
+        const double* q = p.square.g;
         if (p.weight > 0) {
-            if (goal == SpeedGoal::fastest) add(p.square.g, 0.75 * scale_ * p.weight * cube / p.v2, 0.5 * scale_ * p.weight * cube);
-            else add(p.square.g, 0, -scale_ * p.weight);
+            if (goal == SpeedGoal::fastest) add(q[0], q[1], q[2], 0.75 * scale_ * p.weight * cube / p.v2, 0.5 * scale_ * p.weight * cube);
+            else add(q[0], q[1], q[2], 0, -scale_ * p.weight);
         }
         for (int i = 0; i < p.rows; ++i) {
             const Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double l = row.move;  // set by the caller to the present value
-            if (row.bound == Bound::cap) {
-                const double sigma = row.above - l, over = row.z_up / row.s_up;
-                worst = std::max(worst, -sigma);
-                const double force = mu / row.s_up - over * (sigma - row.s_up);
-                add(row.l.g, over, -force);
-                continue;
-            }
-            double up_bend = 0, down_bend = 0, up = row.above, down = row.below;
-            if (row.bound == Bound::over_velocity) {
-                up_bend = -0.5 * row.above * cube;
-                down_bend = -0.5 * row.below * cube;
-                up *= p.over_v;
-                down *= p.over_v;
-            }
-            // d(sigma)/dd: bend * square.g -+ l.g
-            double g[3];
-            const double over_up = row.z_up / row.s_up, over_down = row.z_down / row.s_down;
-            for (int k = 0; k < 3; ++k) g[k] = up_bend * p.square.g[k] - row.l.g[k];
-            add(g, over_up, mu / row.s_up - over_up * (up - l - row.s_up));
-            for (int k = 0; k < 3; ++k) g[k] = down_bend * p.square.g[k] + row.l.g[k];
-            add(g, over_down, mu / row.s_down - over_down * (down + l - row.s_down));
-            worst = std::max({worst, -(up - l) / up, -(down + l) / down});
+            const double* l = row.l.g;
+            const auto side = [&](const Side& x, double sign) {
+                double left = x.bound - sign * row.value, bend = 0;
+                if (row.bound == Bound::over_velocity) {
+                    left = x.bound * p.over_v - sign * row.value;
+                    bend = -0.5 * x.bound * cube;
+                }
+                const double weight = x.z / x.s, force = x.z + weight * (mu / x.z - left);
+                add(bend * q[0] - sign * l[0], bend * q[1] - sign * l[1], bend * q[2] - sign * l[2], weight, force);
+            };
+            side(row.up, 1);
+            if (!one_sided(row)) side(row.down, -1);
         }
         const int c = p.cell;
         double* at = &band_[static_cast<std::size_t>(3 * c)];
@@ -188,7 +199,6 @@ double SpeedProblem::assemble(double mu, SpeedGoal goal) {
             right_[static_cast<std::size_t>(c + 1)] += f2;
         }
     }
-    return worst;
 }
 
 /// L D L^T of five diagonals. The step replaces right_.
@@ -223,14 +233,66 @@ bool SpeedProblem::factor_and_solve() {
     return true;
 }
 
+/// How far v2, slacks and multipliers stay positive on the way that right_ says.
+SpeedProblem::Steps SpeedProblem::measure_step(double mu, const std::vector<double>& d) {
+    Steps steps;
+    for (std::size_t i = 0; i < d.size(); ++i)
+        if (right_[i] < -0.8 * d[i]) steps.primal = std::min(steps.primal, -0.8 * d[i] / right_[i]);
+    const auto stay = [](double now, double change, double& step) {
+        if (change < -to_the_boundary * now && change * step < -to_the_boundary * now) step = -to_the_boundary * now / change;
+    };
+    for (const Point& p : points_) {
+        const double square_move = value(p.square, p.cell, right_) - p.square.k;
+        if (square_move < -0.8 * p.v2) steps.primal = std::min(steps.primal, -0.8 * p.v2 / square_move);
+        const double cube = p.over_v / p.v2;
+        for (int i = 0; i < p.rows; ++i) {
+            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
+            const double move = value(row.l, p.cell, right_) - row.l.k;
+            const auto side = [&](Side& x, double sign) {
+                double left = x.bound - sign * row.value, change = -sign * move;
+                if (row.bound == Bound::over_velocity) {
+                    left = x.bound * p.over_v - sign * row.value;
+                    change -= 0.5 * x.bound * cube * square_move;
+                }
+                x.ds = left - x.s + change;
+                x.dz = (mu - x.z * x.ds) / x.s - x.z;
+                stay(x.s, x.ds, steps.primal);
+                stay(x.z, x.dz, steps.dual);
+            };
+            side(row.up, 1);
+            if (!one_sided(row)) side(row.down, -1);
+        }
+    }
+    return steps;
+}
+
+double SpeedProblem::take_step(const Steps& steps, std::vector<double>& d) {
+    for (std::size_t i = 0; i < d.size(); ++i) d[i] += steps.primal * right_[i];
+    look(d);
+    double gap = 0;
+    for (const Point& p : points_)
+        for (int i = 0; i < p.rows; ++i) {
+            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
+            const auto side = [&](Side& x, double sign) {
+                const double left = (row.bound == Bound::over_velocity ? x.bound * p.over_v : x.bound) - sign * row.value;
+                // A jerk's bound is convex: what the step promised is kept at least. A slack follows what is really there.
+                x.s = std::max(x.s + steps.primal * x.ds, left);
+                x.z += steps.dual * x.dz;
+                gap += x.s * x.z;
+            };
+            side(row.up, 1);
+            if (!one_sided(row)) side(row.down, -1);
+        }
+    return gap;
+}
+
 /// From rest, v2 times a small number keeps every limit: velocity, acceleration and jerk go with its powers 1/2, 1 and 3/2.
 void SpeedProblem::make_feasible(std::vector<double>& d, double share) {
     double most = 0;
     for (const Point& p : points_)
         for (int i = 0; i < p.rows; ++i) {
             const Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double l = value(row.l, p.cell, d);
-            double use = std::max(l / row.above, row.bound == Bound::cap ? 0.0 : -l / row.below);
+            double use = std::max(row.value / row.above, one_sided(row) ? 0.0 : -row.value / row.below);
             if (row.bound == Bound::over_velocity) {
                 const double root = math::cbrt(use / p.over_v);
                 use = root * root;
@@ -244,107 +306,41 @@ void SpeedProblem::make_feasible(std::vector<double>& d, double share) {
 
 SpeedOutcome SpeedProblem::solve(std::vector<double>& d, SpeedGoal goal, SpeedGuess guess) {
     SpeedOutcome outcome;
-    const auto n = static_cast<std::size_t>(cells());
-    band_.assign(3 * n + 9, 0);
-    right_.assign(n, 0);
-    if (start_.rest_length <= 0) d[0] = start_.square + start_.slope * lengths_[0] / 2;
+    band_.assign(3 * d.size() + 9, 0);
+    right_.assign(d.size(), 0);
+    if (moving()) d[0] = start_.square + start_.slope * lengths_[0] / 2;
     look(d);
-    if (start_.rest_length > 0) make_feasible(d, guess == SpeedGuess::rough ? 0.8 : 0.97);
+    if (!moving()) make_feasible(d, guess == SpeedGuess::rough ? 0.8 : 0.97);
     double total = 0, sides = 0;
     for (const Point& p : points_) total += p.weight * (goal == SpeedGoal::fastest ? p.over_v : p.v2);
     scale_ = 1 / total;
-    for (const Row& row : rows_) sides += row.bound == Bound::cap ? 1 : 2;
-    double mu = (guess == SpeedGuess::rough ? 0.1 : 0.01) / sides;
-    start_slacks(d, mu);
-    double previous = 1;
-    for (; outcome.steps < max_steps; ++outcome.steps) {
-        for (Point& p : points_)
-            for (int i = 0; i < p.rows; ++i) {
-                Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-                row.move = value(row.l, p.cell, d);
-            }
-        double worst = assemble(mu, goal);
-        if (!factor_and_solve()) break;
-
-        // How far: v2 stays positive, slacks and multipliers do.
-        double primal = 1, dual = 1;
-        for (std::size_t i = 0; i < n; ++i)
-            if (right_[i] < -0.8 * d[i]) primal = std::min(primal, -0.8 * d[i] / right_[i]);
-        for (Point& p : points_) {
-            const double square_move = value(p.square, p.cell, right_) - p.square.k;
-            if (square_move < -0.8 * p.v2) primal = std::min(primal, -0.8 * p.v2 / square_move);
-            const double cube = p.over_v / p.v2;
-            for (int i = 0; i < p.rows; ++i) {
-                Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-                const double l = row.move, move = value(row.l, p.cell, right_) - row.l.k;
-                const auto side = [&](double bound, double sign, double s, double z, double& ds, double& dz) {
-                    double sigma = bound - sign * l, change = -sign * move;
-                    if (row.bound == Bound::over_velocity) {
-                        sigma = bound * p.over_v - sign * l;
-                        change -= 0.5 * bound * cube * square_move;
-                    }
-                    ds = sigma - s + change;
-                    dz = (mu - z * ds) / s - z;
-                    if (ds < -to_the_boundary * s) primal = std::min(primal, -to_the_boundary * s / ds);
-                    if (dz < -to_the_boundary * z) dual = std::min(dual, -to_the_boundary * z / dz);
-                };
-                double ds = 0, dz = 0;
-                side(row.above, 1, row.s_up, row.z_up, ds, dz);
-                if (row.bound != Bound::cap) side(row.below, -1, row.s_down, row.z_down, ds, dz);
-            }
-        }
-        double gap = 0;
-        for (Point& p : points_) {
-            const double square_move = value(p.square, p.cell, right_) - p.square.k;
-            const double cube = p.over_v / p.v2;
-            for (int i = 0; i < p.rows; ++i) {
-                Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-                const double l = row.move, move = value(row.l, p.cell, right_) - row.l.k;
-                const auto side = [&](double bound, double sign, double& s, double& z) {
-                    double sigma = bound - sign * l, change = -sign * move;
-                    if (row.bound == Bound::over_velocity) {
-                        sigma = bound * p.over_v - sign * l;
-                        change -= 0.5 * bound * cube * square_move;
-                    }
-                    const double ds = sigma - s + change;
-                    const double dz = (mu - z * ds) / s - z;
-                    s += primal * ds;
-                    z += dual * dz;
-                };
-                side(row.above, 1, row.s_up, row.z_up);
-                if (row.bound != Bound::cap) side(row.below, -1, row.s_down, row.z_down);
-            }
-        }
-        for (std::size_t i = 0; i < n; ++i) d[i] += primal * right_[i];
-        look(d);
-        // The jerk's bound is convex: what the step promised is kept at least. A slack follows what is really there.
-        worst = 0;
-        for (Point& p : points_)
-            for (int i = 0; i < p.rows; ++i) {
-                Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-                const double l = value(row.l, p.cell, d);
-                const double size = row.bound == Bound::over_velocity ? p.over_v : 1;
-                const double up = residual(row, p, true, l);
-                worst = std::max(worst, -up / size);
-                row.s_up = std::max(row.s_up, up);
-                gap += row.s_up * row.z_up;
-                if (row.bound == Bound::cap) continue;
-                const double down = residual(row, p, false, l);
-                worst = std::max(worst, -down / size);
-                row.s_down = std::max(row.s_down, down);
-                gap += row.s_down * row.z_down;
-            }
-        outcome.feasible = worst <= 0;
-        const double least = std::min(primal, dual);
-        if (outcome.feasible && gap < settled_gap && previous > 0.5 && least > 0.5) {
-            outcome.settled = true;
-            ++outcome.steps;
-            break;
-        }
-        previous = least;
-        mu = gap / sides * (least > 0.9 ? 0.1 : least > 0.5 ? 0.3 : least > 0.2 ? 0.6 : 1.0);
-        mu = std::max(mu, 0.1 * settled_gap / sides);
+    for (const Row& row : rows_) sides += one_sided(row) ? 1 : 2;
+    relax(Room::first);
+    center(inside_first / sides);
+    // While something is relaxed, being inside counts for more than being fast.
+    while (!feasible_ && outcome.steps < max_steps) {
+        ++outcome.steps;
+        const double mu = inside_first / sides;
+        assemble(mu, goal);
+        if (!factor_and_solve()) return outcome;
+        (void)take_step(measure_step(mu, d), d);
+        relax(Room::less);
     }
+    if (!feasible_) return outcome;
+    double mu = (guess == SpeedGuess::rough ? 0.1 : 0.01) / sides, previous = 1;
+    center(mu);
+    for (const int most = outcome.steps + max_steps; outcome.steps < most && !outcome.settled;) {
+        ++outcome.steps;
+        assemble(mu, goal);
+        if (!factor_and_solve()) break;
+        const Steps steps = measure_step(mu, d);
+        const double gap = take_step(steps, d);
+        const double least = std::min(steps.primal, steps.dual);
+        outcome.settled = gap < settled_gap && previous > 0.5 && least > 0.5;
+        previous = least;
+        mu = std::max(gap / sides * (least > 0.9 ? 0.1 : least > 0.5 ? 0.3 : least > 0.2 ? 0.6 : 1.0), 0.1 * settled_gap / sides);
+    }
+    outcome.feasible = true;
     return outcome;
 }
 

@@ -40,7 +40,7 @@ enum class SpeedGuess : std::uint8_t { rough, near };
 enum class SpeedGoal : std::uint8_t { fastest, slowest };
 
 struct SpeedOutcome {
-    bool feasible = false;  ///< every row holds strictly
+    bool feasible = false;  ///< every row holds strictly, but for soft caps
     bool settled = false;   ///< and nothing more is to be had
     int steps = 0;
 };
@@ -52,7 +52,9 @@ public:
     /// Points of one cell after those of the cell before; rows after their point.
     void add_point(const SpeedPoint& point);
     /// v2 <= square at the last point.
-    void add_cap(double square);
+    void add_cap(double square) { add_cap(square, Bound::cap); }
+    /// The same, for a velocity that a moving beginning may be above: it is come back to.
+    void add_soft_cap(double square) { add_cap(square, Bound::soft_cap); }
     /// The middle of the last point's cell <= square: then v2 <= square all over it, if it is at both ends.
     void add_cap_on_middle(double square);
     void add_acceleration(const SpeedRow& row) { add_row(row, Bound::plain); }
@@ -66,7 +68,8 @@ public:
     [[nodiscard]] double node(int i, const std::vector<double>& middles) const noexcept;
 
 private:
-    enum class Bound : std::uint8_t { plain, over_velocity, cap };
+    enum class Room : std::uint8_t { first, less };
+    enum class Bound : std::uint8_t { plain, over_velocity, cap, soft_cap };
     struct Triple {
         double g[3] = {0, 0, 0};  // of the middles of the cell before, of the cell, of the cell behind
         double k = 0;
@@ -79,25 +82,36 @@ private:
         // of the present iterate
         double v2, over_v;
     };
+    /// One inequality: its bound as relaxed, what is left of it, its multiplier; and their changes by a step.
+    struct Side {
+        double bound, s, z, ds, dz;
+    };
     struct Row {
         Triple l;
         double above, below;
-        double s_up, s_down, z_up, z_down;
-        double move;  // change of l by the step
+        double value;  // of l now
+        Side up, down;
         Bound bound;
     };
 
     void add_row(const SpeedRow& row, Bound bound);
     [[nodiscard]] Triple node_triple(int node, int cell) const noexcept;
     [[nodiscard]] double value(const Triple& t, int cell, const std::vector<double>& d) const noexcept;
+    void add_cap(double square, Bound bound);
+    [[nodiscard]] bool moving() const noexcept { return start_.rest_length <= 0; }
+    [[nodiscard]] static bool one_sided(const Row& row) noexcept { return row.bound == Bound::cap || row.bound == Bound::soft_cap; }
     void look(const std::vector<double>& d);
     void make_feasible(std::vector<double>& d, double share);
-    void start_slacks(const std::vector<double>& d, double mu);
-    double assemble(double mu, SpeedGoal goal);
+    void relax(Room room);
+    void center(double mu);
+    void assemble(double mu, SpeedGoal goal);
     bool factor_and_solve();
-    [[nodiscard]] double primal_step() noexcept;
-    [[nodiscard]] double dual_step(double mu) noexcept;
-    [[nodiscard]] double residual(const Row& row, const Point& point, bool up, double l) const noexcept;
+    struct Steps {
+        double primal = 1, dual = 1;
+    };
+    [[nodiscard]] Steps measure_step(double mu, const std::vector<double>& d);
+    /// Returns s z summed.
+    [[nodiscard]] double take_step(const Steps& steps, std::vector<double>& d);
 
     std::vector<double> nodes_, lengths_;
     SpeedEnd start_, end_;
@@ -105,6 +119,7 @@ private:
     std::vector<Row> rows_;
     std::vector<double> band_, right_;  // three numbers per cell: the diagonal and two above it
     double scale_ = 1;                  // of the goal
+    bool feasible_ = false;
 };
 
 }  // namespace taktwerk::axes

@@ -4,6 +4,7 @@
 // which is what the optimisation works with: a plan is carried out as it was found, nothing is fitted in between. docs/motion/path.md.
 
 #include <cmath>
+#include <cstdint>
 
 #include "core/math.hpp"
 
@@ -54,13 +55,14 @@ struct PathWave {
 struct TimePiece {
     enum class Kind : unsigned char { moving, from_rest, to_rest, waiting };
 
-    double begin_time = 0;  ///< s since the plan's beginning
-    double duration = 0;    ///< s
-    double begin = 0;       ///< s at its beginning, u
-    double length = 0;      ///< u
-    double velocity = 0;    ///< at its beginning, u/s
-    double slope = 0;       ///< moving: acceleration at its beginning, u/s2; from and to rest: the constant jerk, u/s3
-    double curvature = 0;   ///< moving: c, 1/s2
+    double begin_time = 0;   ///< s since the plan's beginning
+    double duration = 0;     ///< s
+    double begin = 0;        ///< s at its beginning, u
+    double length = 0;       ///< u
+    double velocity = 0;     ///< at its beginning, u/s
+    double slope = 0;        ///< moving: acceleration at its beginning, u/s2; from and to rest: the constant jerk, u/s3
+    double curvature = 0;    ///< moving: c, 1/s2
+    std::uint32_t part = 0;  ///< of the curve
     Kind kind = Kind::moving;
 
     [[nodiscard]] PathMotion at(double t) const noexcept {

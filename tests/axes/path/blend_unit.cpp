@@ -31,7 +31,7 @@ TEST(Blend, CornerDistanceLeavesAndJoinsThere) {
 }
 
 TEST(Blend, CornerDeviationIsExact) {
-    for (double angle : {0.05, 0.5, 1.5, 2.5, 3.0}) {
+    for (double angle : {0.05, 0.5, 1.5, 2.5, 2.75}) {
         const PathElement second = PathElement::line(at(0, 0), at(100 * std::cos(angle), 100 * std::sin(angle)));
 
         const auto b = blend(along_x, second, {BlendRule::corner_deviation, 0.2}, 50, 50);

@@ -65,6 +65,11 @@ public:
         std::size_t i = path_.index_at(s);
         return all[i].end() > s ? all[i].end() : end();
     }
+    [[nodiscard]] double next_stop(double s) const noexcept override {
+        for (std::size_t i = path_.index_at(s) + 1; i < path_.sections().size(); ++i)
+            if (path_.sections()[i].stop_before && path_.sections()[i].begin > s) return path_.sections()[i].begin;
+        return end();
+    }
     [[nodiscard]] double feature(double s, CurveSide side) const noexcept override {
         const PathSection& section = section_at(s, side);
         const double own = section.element.feature(section.from + s - section.begin);
@@ -75,8 +80,11 @@ public:
     }
     [[nodiscard]] CurvePoint at(double s, CurveSide side) const noexcept override { return axes_at(s, side).point; }
 
-    [[nodiscard]] PathAxes axes_at(double s, CurveSide side) const noexcept {
-        const PathSection& section = section_at(s, side);
+    [[nodiscard]] PathAxes axes_at(double s, CurveSide side) const noexcept { return axes_on(section_at(s, side), s); }
+    [[nodiscard]] std::uint32_t part_at(double s) const noexcept override { return static_cast<std::uint32_t>(path_.index_at(s)); }
+    [[nodiscard]] PathAxes axes_in(std::uint32_t part, double s) const noexcept { return axes_on(path_.sections()[part], s); }
+
+    [[nodiscard]] PathAxes axes_on(const PathSection& section, double s) const noexcept {
         const PathPoint p = section.at(s);
         PathAxes a;
         const auto set = [&](int axis, const Jet& j) {

@@ -1,0 +1,115 @@
+#include "axes/path_time/path_service.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/path_time/along_limits.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
+constexpr int most_stops = 12;
+
+}  // namespace
+
+/// The first border between pieces that the cycle does not reach before `lead`; the number of pieces where that is their end.
+int PathService::border(const StretchProgress& at) const {
+    const auto& pieces = active_.plan.pieces;
+    if (active_.id == 0 || at.stretch != active_.id) return static_cast<int>(pieces.size());
+    double time = 0;
+    std::size_t i = static_cast<std::size_t>(at.piece) + 1;
+    while (i < pieces.size() && time < lead_) time += pieces[i++].duration;
+    i += static_cast<std::size_t>(skip_);
+    // The last piece is the end of braking: nothing else leads from there but to rest.
+    return static_cast<int>(i + 1 >= pieces.size() ? pieces.size() : i);
+}
+
+void PathService::send(int at_piece, const RunTask& task, bool stands) {
+    Stretch* stretch = exchange_.free_stretch();
+    stretch->id = ++ids_;
+    stretch->follows = active_.id;
+    stretch->at_piece = at_piece;
+    stretch->count = static_cast<int>(plan_.pieces.size());
+    std::copy(plan_.pieces.begin(), plan_.pieces.end(), stretch->pieces.begin());
+    exchange_.offer();
+    sent_.id = stretch->id;
+    sent_.at_piece = at_piece;
+    sent_.to = task.to;
+    sent_.factor = task.velocity_factor;
+    sent_.stands = stands;
+    sent_.plan = plan_;
+    pending_ = true;
+}
+
+/// To rest as soon as can be: at the least distance at which a plan is found.
+bool PathService::plan_halt(const Curve& curve, RunTask task, double furthest, const RunShape* former) {
+    const AlongLimits l = along_limits(curve.at(task.from, CurveSide::after), limits_, 1);
+    // From v and a with full jerk: what is left of the acceleration goes, then deceleration comes and goes.
+    const double v = task.velocity + std::max(task.acceleration, 0.0) * std::fabs(task.acceleration) / (2 * l.jerk);
+    const double ramp = l.deceleration / l.jerk;
+    double way = v * v / (2 * l.deceleration) + v * ramp / 2 + v * std::fabs(task.acceleration) / l.jerk;
+    if (task.acceleration < 0) way = task.velocity * task.velocity / (2 * l.deceleration);
+    for (int i = 0; i < most_stops; ++i, way *= stop_growth) {
+        task.to = task.from + way;
+        if (task.to >= furthest) return false;
+        planner_.plan(curve, limits_, task, plan_, former);
+        if (plan_.found) return true;
+    }
+    return false;
+}
+
+PathAnswer PathService::step(const Curve& curve, double final_end, const PathWish& wish) {
+    if (pending_) {
+        if (exchange_.offering()) return PathAnswer::waiting;
+        pending_ = false;
+        if (exchange_.progress().stretch != sent_.id) {
+            ++late_;
+            return PathAnswer::late;
+        }
+        exchange_.was_taken();
+        std::swap(active_, sent_);
+        skip_ = 0;
+    }
+    const StretchProgress at = exchange_.progress();
+    const bool stand = wish.motion == PathWish::Motion::stand || wish.velocity_factor <= 0;
+    const int begin = border(at);
+    const bool at_rest = begin >= static_cast<int>(active_.plan.pieces.size());
+    RunTask task;
+    task.from = at_rest ? active_.to : active_.plan.pieces[static_cast<std::size_t>(begin)].begin;
+    task.velocity_factor = stand ? active_.factor : std::min(wish.velocity_factor, 1.0);
+    const RunShape* former = nullptr;
+    if (!at_rest) {
+        const TimePiece& piece = active_.plan.pieces[static_cast<std::size_t>(begin)];
+        task.velocity = piece.velocity;
+        task.acceleration = piece.slope;
+        former = &active_.plan.shape;
+    }
+    if (stand) {
+        if (at_rest || active_.stands) return PathAnswer::nothing_new;
+        if (!plan_halt(curve, task, active_.to, former)) {
+            ++skip_;
+            return PathAnswer::kept;
+        }
+        task.to = plan_.shape.end;
+        send(begin, task, true);
+        return PathAnswer::offered;
+    }
+    task.to = std::min(curve.next_stop(task.from), final_end);
+    const bool same =
+        !active_.stands && task.velocity_factor == active_.factor && std::fabs(task.to - active_.to) <= 1e-12 * std::fabs(task.to);
+    if ((!at_rest && same) || !(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
+    planner_.plan(curve, limits_, task, plan_, former);
+    for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > Stretch::most_pieces; ++i) {
+        task.to = task.from + (task.to - task.from) / 2;
+        planner_.plan(curve, limits_, task, plan_, former);
+    }
+    if (!plan_.found || plan_.pieces.size() > Stretch::most_pieces) {
+        ++skip_;
+        return PathAnswer::kept;
+    }
+    send(begin, task, false);
+    return PathAnswer::offered;
+}
+
+}  // namespace taktwerk::axes

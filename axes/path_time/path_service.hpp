@@ -1,0 +1,72 @@
+#pragma once
+// The planner's side of a path's time: keeps the cycle supplied with stretches, as the path grows, as the override changes, as somebody wants to
+// stand. Steps on the service side; never waits.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "axes/path_time/curve.hpp"
+#include "axes/path_time/run_plan.hpp"
+#include "axes/path_time/stretch_exchange.hpp"
+
+namespace taktwerk::axes {
+
+/// What somebody wants of the motion along the path. Halt, interrupt and stop all are `stand`; continue is `go`.
+struct PathWish {
+    enum class Motion : std::uint8_t { stand, go };
+    Motion motion = Motion::go;
+    double velocity_factor = 1;  ///< [0, 1]; 0 stands
+};
+
+enum class PathAnswer : std::uint8_t {
+    nothing_new,  ///< what runs is what is wanted
+    waiting,      ///< the last stretch was not taken yet
+    offered,      ///< a new stretch is on its way
+    kept,         ///< nothing better was found from there: what runs goes on to its stop
+    late,         ///< the last stretch came too late; the next step tries from further on
+};
+
+class PathService {
+public:
+    /// `limits` of the axes; `lead` [s]: a stretch begins at the earliest so long after the end of the piece that the cycle is on: at least what a plan takes
+    /// and the way to the cycle.
+    PathService(std::vector<PathAxisLimits> limits, StretchExchange& exchange, double lead)
+        : limits_(std::move(limits)), exchange_(exchange), lead_(lead) {}
+
+    /// `final_end`: up to there the curve will not change any more. A curve that ends there has to be the one of the step before as far as
+    /// that one's final end.
+    PathAnswer step(const Curve& curve, double final_end, const PathWish& wish);
+
+    /// The end at rest of what runs or is on its way.
+    [[nodiscard]] double end() const noexcept { return active_.to; }
+    [[nodiscard]] std::uint32_t late() const noexcept { return late_; }
+    [[nodiscard]] const RunPlan& last_plan() const noexcept { return plan_; }
+
+private:
+    struct Sent {
+        std::uint32_t id = 0;
+        int at_piece = 0;
+        double to = 0;
+        double factor = 1;
+        bool stands = false;  // because somebody wanted to
+        RunPlan plan;
+    };
+
+    [[nodiscard]] int border(const StretchProgress& at) const;
+    bool plan_halt(const Curve& curve, RunTask task, double furthest, const RunShape* former);
+    void send(int at_piece, const RunTask& task, bool stands);
+
+    std::vector<PathAxisLimits> limits_;
+    StretchExchange& exchange_;
+    double lead_;
+    RunPlanner planner_;
+    RunPlan plan_;
+    Sent active_, sent_;
+    bool pending_ = false;
+    int skip_ = 0;  // borders to leave out after one from which nothing was found
+    std::uint32_t ids_ = 0;
+    std::uint32_t late_ = 0;
+};
+
+}  // namespace taktwerk::axes

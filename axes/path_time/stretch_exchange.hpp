@@ -1,0 +1,65 @@
+#pragma once
+// From the planner to the cycle: stretches of s(t), each of which ends at rest. A stretch takes the place of what is left of the one before it,
+// from a piece on that has not begun yet: whoever runs a stretch that nothing follows comes to a stop inside all limits.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "axes/path_time/time_piece.hpp"
+
+namespace taktwerk::axes {
+
+struct Stretch {
+    static constexpr int most_pieces = 4096;
+
+    std::uint32_t id = 0;       ///< counts from 1
+    std::uint32_t follows = 0;  ///< the stretch whose piece `at_piece` its first piece replaces; 0: the first of all
+    int at_piece = 0;
+    int count = 0;
+    std::array<TimePiece, most_pieces> pieces{};
+};
+
+/// Where the cycle is: on a piece of a stretch; behind the last piece it stands.
+struct StretchProgress {
+    std::uint32_t stretch = 0;
+    int piece = 0;
+};
+
+/// One planner, one cycle, any two threads. Wait-free. One stretch runs, one is offered.
+class StretchExchange {
+public:
+    // The planner's side.
+
+    /// A stretch to be filled; nothing while the last one offered was neither taken nor refused.
+    [[nodiscard]] Stretch* free_stretch() noexcept {
+        return offered_.load(std::memory_order_acquire) == nullptr ? &stretches_[filled_ ^ 1u] : nullptr;
+    }
+    /// Offers the stretch that free_stretch() gave.
+    void offer() noexcept { offered_.store(&stretches_[filled_ ^ 1u], std::memory_order_release); }
+    [[nodiscard]] bool offering() const noexcept { return offered_.load(std::memory_order_acquire) != nullptr; }
+    /// Where the cycle is. Asked for after offering() was false, it says whether the last offer was taken: from then on its stretch runs.
+    [[nodiscard]] StretchProgress progress() const noexcept {
+        const std::uint64_t both = progress_.load(std::memory_order_acquire);
+        return {static_cast<std::uint32_t>(both >> 32), static_cast<int>(both & 0xffffffffu)};
+    }
+    /// The last offer was taken: what the cycle ran before is the planner's again.
+    void was_taken() noexcept { filled_ ^= 1u; }
+
+    // The cycle's side.
+
+    [[nodiscard]] const Stretch* offered() const noexcept { return offered_.load(std::memory_order_acquire); }
+    /// Takes or refuses the offer; where the cycle is has been told before.
+    void answer() noexcept { offered_.store(nullptr, std::memory_order_release); }
+    void tell(const StretchProgress& at) noexcept {
+        progress_.store((static_cast<std::uint64_t>(at.stretch) << 32) | static_cast<std::uint32_t>(at.piece), std::memory_order_release);
+    }
+
+private:
+    std::array<Stretch, 2> stretches_{};
+    unsigned filled_ = 0;  // the planner's: the other one is free
+    std::atomic<const Stretch*> offered_{nullptr};
+    std::atomic<std::uint64_t> progress_{0};
+};
+
+}  // namespace taktwerk::axes

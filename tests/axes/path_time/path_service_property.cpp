@@ -1,0 +1,175 @@
+// A path that is fed piece by piece, with an override that changes, halts, and a planner that is sometimes late: whatever comes, set-points of every
+// cycle keep all limits, and s only ever moves on along the path. T-05, G-063 to G-071.
+
+#include "axes/path_time/path_service.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "axes/path_time/path_player.hpp"
+#include "core/guard/allocation_guard.hpp"
+#include "tests/axes/path_time/path_curve.hpp"
+#include "tests/axes/path_time/random_program.hpp"
+#include "tests/property_cases.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+/// Time passes while a plan is made: the cycle goes on.
+class SlowCurve : public PathCurve {
+public:
+    using PathCurve::PathCurve;
+    std::function<void()> while_planning;
+
+    [[nodiscard]] double next_stop(double s) const noexcept override {
+        if (while_planning) while_planning();
+        return PathCurve::next_stop(s);
+    }
+};
+
+struct Feeding {
+    std::size_t programs = 0, cycles = 0, offered = 0, kept = 0, late = 0, halts = 0;
+    LimitUse worst;
+    double worst_step = 0;  // differences of set-points between cycles, as parts of limits
+};
+
+class FedProgram {
+public:
+    FedProgram(std::uint64_t seed, Feeding& totals) : random_(seed), totals_(totals) {
+        const double size = random_.between_decades(0.5, 500), velocity = size * random_.between_decades(0.5, 5);
+        axes_ = random_.whole(1, 3);
+        path_ = random_.path(random_.whole(2, 15), size, axes_, velocity);
+        limits_ = random_.limits(axes_, velocity);
+        period_ = 1e-3;
+    }
+
+    void run(bool disturbed) {
+        SlowCurve curve(path_, axes_);
+        PathPlayer player(*exchange_);
+        PathService service(limits_, *exchange_, 0.02);
+        PathWish wish;
+        std::size_t known = disturbed ? 1 : path_.sections().size();
+        const int calm = 20'000;  // cycles after which nobody disturbs any more
+        const auto cycle = [&] { look(curve, player); };
+        if (disturbed)
+            curve.while_planning = [&] {
+                const int passed = random_.uniform(0, 1) < 0.1 ? random_.whole(20, 200) : random_.whole(0, 10);
+                for (int i = 0; i < passed; ++i) cycle();
+            };
+        int still = 0;
+        for (int i = 0; i < 400'000 && still < 100 && !::testing::Test::HasFailure(); ++i) {
+            if (disturbed && i % 50 == 0) disturb(wish, known, i < calm);
+            if (i % 5 == 0) {
+                const PathAnswer answer = service.step(curve, path_.sections()[known - 1].end(), wish);
+                totals_.offered += answer == PathAnswer::offered ? 1 : 0;
+                totals_.kept += answer == PathAnswer::kept ? 1 : 0;
+            }
+            cycle();
+            still = player.standing() && player.now().s >= path_.length() * (1 - 1e-12) ? still + 1 : 0;
+        }
+        totals_.late += service.late();
+        ++totals_.programs;
+        EXPECT_EQ(still, 100) << "at " << player.now().s << " of " << path_.length() << ", " << known << " of " << path_.sections().size();
+        EXPECT_EQ(player.late(), service.late());
+    }
+
+private:
+    void disturb(PathWish& wish, std::size_t& known, bool wild) {
+        const std::size_t all = path_.sections().size();
+        if (!wild) {
+            known = all;
+            wish = {};
+            return;
+        }
+        if (known < all && random_.uniform(0, 1) < 0.5) ++known;
+        if (random_.uniform(0, 1) < 0.1) wish.velocity_factor = random_.uniform(0, 1) < 0.2 ? 0 : random_.between_decades(0.03, 1);
+        if (random_.uniform(0, 1) < 0.1) wish.motion = wish.motion == PathWish::Motion::go ? PathWish::Motion::stand : PathWish::Motion::go;
+        totals_.halts += wish.motion == PathWish::Motion::stand ? 1 : 0;
+    }
+
+    /// One cycle: exact derivatives now, and what the drives see: differences between cycles.
+    void look(const PathCurve& curve, PathPlayer& player) {
+        const PathMotion before = last_;
+        {
+            NoAllocationScope none;
+            last_ = player.step(period_);
+            EXPECT_EQ(none.used().total(), 0u);
+        }
+        ++totals_.cycles;
+        ASSERT_GE(last_.s, before.s - 1e-12 * path_.length());
+        const PathAxes axes = curve.axes_in(player.part(), last_.s);
+        const LimitUse use = limit_use(axes.point, limits_, 1, last_);
+        std::array<std::array<double, 3>, max_path_axes> now{};
+        for (std::size_t i = 0; i < limits_.size(); ++i) {
+            const auto& p = axes.point;
+            now[i] = {axes.q[i], p.first[i] * last_.velocity,
+                      p.first[i] * last_.acceleration + p.second[i] * last_.velocity * last_.velocity};
+            if (!first_) {
+                const PathAxisLimits& l = limits_[i];
+                const double position = std::fabs(now[i][0] - axes_last_[i][0]) / (l.velocity * period_);
+                const double velocity = std::fabs(now[i][1] - axes_last_[i][1]) / (l.acceleration * period_);
+                const double acceleration = std::fabs(now[i][2] - axes_last_[i][2]) / (l.jerk * period_);
+                totals_.worst_step = std::max({totals_.worst_step, position, velocity, acceleration});
+                ASSERT_LE(position, 1 + 1e-6);
+                ASSERT_LE(velocity, 1 + 1e-6);
+                ASSERT_LE(acceleration, 1 + 1e-3);
+            }
+        }
+        totals_.worst.widen(use);
+        ASSERT_LE(use.velocity, 1 + 1e-6) << last_.s;
+        ASSERT_LE(use.acceleration, 1 + 1e-6) << last_.s;
+        ASSERT_LE(use.jerk, 1 + 1e-3) << last_.s << " v " << last_.velocity << " a " << last_.acceleration << " j " << last_.jerk
+                                      << " part " << player.part();
+        axes_last_ = now;
+        first_ = false;
+    }
+
+    RandomProgram random_;
+    Feeding& totals_;
+    int axes_ = 0;
+    Path path_;
+    std::vector<PathAxisLimits> limits_;
+    double period_ = 0;
+    std::unique_ptr<StretchExchange> exchange_ = std::make_unique<StretchExchange>();
+    PathMotion last_{};
+    std::array<std::array<double, 3>, max_path_axes> axes_last_{};
+    bool first_ = true;
+};
+
+void report(const char* what, const Feeding& f) {
+    std::printf(
+        "%s: %zu programs, %zu cycles, %zu stretches, %zu kept, %zu late; worst use: velocity 1%+.1e, acceleration 1%+.1e, jerk 1%+.1e; "
+        "steps between cycles 1%+.1e\n",
+        what, f.programs, f.cycles, f.offered, f.kept, f.late, f.worst.velocity - 1, f.worst.acceleration - 1, f.worst.jerk - 1,
+        f.worst_step - 1);
+}
+
+TEST(PathServiceProperty, UndisturbedProgramsArrive) {
+    Feeding totals;
+    const std::size_t cases = property_cases(12);
+    for (std::size_t i = 0; i < cases && !HasFailure(); ++i) {
+        SCOPED_TRACE(::testing::Message() << "program " << i);
+        FedProgram(1000 + i, totals).run(false);
+    }
+    report("undisturbed", totals);
+}
+
+TEST(PathServiceProperty, FeedingOverrideHaltsAndLatePlansKeepEveryLimit) {
+    Feeding totals;
+    const std::size_t cases = property_cases(12);
+    for (std::size_t i = 0; i < cases && !HasFailure(); ++i) {
+        SCOPED_TRACE(::testing::Message() << "program " << i);
+        FedProgram(2000 + i, totals).run(true);
+    }
+    report("disturbed", totals);
+    EXPECT_GT(totals.late, 0u);
+    EXPECT_GT(totals.halts, 0u);
+}
+
+}  // namespace
+}  // namespace taktwerk::axes
