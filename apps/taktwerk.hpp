@@ -33,6 +33,7 @@ void add_operate(CLI::App& app, Action& action);  ///< jog, home, enable, reset,
 void add_alarms(CLI::App& app, Action& action);   ///< of a running machine: those that stand, and the history
 void add_retain(CLI::App& app, Action& action);   ///< show, export, import, clear what is kept over a time without power
 void add_bundle(CLI::App& app, Action& action);   ///< make, keygen, show, install, activate, rollback, list, diff, remove
+void add_doctor(CLI::App& app, Action& action);   ///< is this computer fit for a cycle?
 void add_docs(CLI::App& app, Action& action);     ///< generated reference: blocks, configuration, alarms, errors
 
 }  // namespace taktwerk::apps

@@ -8,6 +8,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,14 +25,7 @@ Error refusal(std::string code, std::string subject, int number, std::string rem
 }
 
 void note(RealtimeReport& report, std::string what, const Result<void>& result, std::string consequence) {
-    RealtimeItem item;
-    item.what = std::move(what);
-    item.granted = result.ok();
-    if (!item.granted) {
-        item.reason = result.error().remedy.empty() ? result.error().what : result.error().what + ". " + result.error().remedy;
-        item.consequence = std::move(consequence);
-    }
-    report.items.push_back(std::move(item));
+    report.items.push_back(realtime_item(std::move(what), result, std::move(consequence)));
 }
 
 /// Its own frame is the memory to touch; one write a page is enough.
@@ -42,6 +36,17 @@ void note(RealtimeReport& report, std::string what, const Result<void>& result, 
 }
 
 }  // namespace
+
+RealtimeItem realtime_item(std::string what, const Result<void>& result, std::string consequence) {
+    RealtimeItem item;
+    item.what = std::move(what);
+    item.granted = result.ok();
+    if (!item.granted) {
+        item.reason = result.error().remedy.empty() ? result.error().what : result.error().what + ". " + result.error().remedy;
+        item.consequence = std::move(consequence);
+    }
+    return item;
+}
 
 bool RealtimeReport::all_granted() const noexcept {
     return std::all_of(items.begin(), items.end(), [](const RealtimeItem& item) { return item.granted; });
@@ -92,6 +97,16 @@ Result<void> set_fifo_priority(int priority) {
     return {};
 }
 
+int this_thread_number() noexcept { return static_cast<int>(::gettid()); }
+
+Result<void> take_priority(int thread) {
+    const sched_param parameters{};
+    // The flag stays: only a privileged process may clear it.
+    if (::sched_setscheduler(thread, SCHED_OTHER | SCHED_RESET_ON_FORK, &parameters) != 0)
+        return refusal("realtime.priority", fmt::format("thread {}", thread), errno, "");
+    return {};
+}
+
 Result<void> lock_memory() {
     if (::mlockall(MCL_CURRENT | MCL_FUTURE) != 0)
         return refusal("realtime.lock_memory", "", errno, "Grant CAP_IPC_LOCK or set `memlock unlimited` in /etc/security/limits.conf");
@@ -139,6 +154,8 @@ Result<void> prefault_stack(std::size_t bytes) {
 }
 
 bool kernel_is_preempt_rt() {
+    utsname kernel{};
+    if (::uname(&kernel) == 0 && std::strstr(kernel.version, "PREEMPT_RT") != nullptr) return true;
     std::FILE* file = std::fopen("/sys/kernel/realtime", "re");
     if (file == nullptr) return false;
     const bool yes = std::fgetc(file) == '1';

@@ -62,10 +62,17 @@ private:
 /// started later by this thread do not inherit it.
 [[nodiscard]] RealtimeReport prepare_cycle_thread(const RealtimeRequest& request);
 
+/// One line of a report, for what is asked for elsewhere.
+[[nodiscard]] RealtimeItem realtime_item(std::string what, const Result<void>& result, std::string consequence);
+
 // The single steps, each for the calling thread unless said otherwise.
 
 /// 1..99. Errors: realtime.priority.
 [[nodiscard]] Result<void> set_fifo_priority(int priority);
+/// The kernel's number of the calling thread, for take_priority().
+[[nodiscard]] int this_thread_number() noexcept;
+/// Another thread of this process becomes an ordinary one. It can get its priority back by itself: set_fifo_priority(). Errors: realtime.priority.
+[[nodiscard]] Result<void> take_priority(int thread);
 /// Whole process, present and future pages; also stops malloc from giving memory back. Errors: realtime.lock_memory.
 [[nodiscard]] Result<void> lock_memory();
 /// Errors: realtime.cpus.

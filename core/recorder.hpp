@@ -1,6 +1,6 @@
 #pragma once
 // What came from outside, byte by byte and in order, kept in memory while the cycle runs: the base of replay and of the
-// flight recorder. Files are core/recording_file.hpp's business.
+// flight recorder. Files are runtime/recording_file/'s business.
 
 #include <atomic>
 #include <cstddef>

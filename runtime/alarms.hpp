@@ -5,42 +5,11 @@
 
 #include "core/alarm.hpp"
 #include "core/alarm_table.hpp"
+#include "runtime/alarm_ids.hpp"
 
 namespace taktwerk::runtime {
 
-enum class MachineAlarm : AlarmId {
-    emergency_stop = 0x6001,
-    cycle_overrun = 0x6002,
-    task_overrun = 0x6003,
-    program_fault = 0x6004,
-    stopped_by_signal = 0x6005,
-    alarm_log_full = 0x6006,
-    late_wakeups = 0x6007,
-    positions_lost = 0x6008,
-    retain_not_written = 0x6009,
-    program_waits = 0x600A,
-    positions_outdated = 0x600B,
-    values_lost = 0x600C,
-    base_task_overrun = 0x6010,
-    axis_of_two_programs = 0x6011,
-    undeclared_use = 0x6012,
-    start_withdrawn = 0x6013,
-    drive_silent = 0x6014,
-    drive_not_ready_on_line = 0x6015,
-    input_faulty = 0x6016,
-    input_out_of_limits = 0x6017,
-    output_no_number = 0x6018,
-    group_pulled = 0x6019,
-    points_forced = 0x601A,
-};
-/// First number of input_faulty: what its terminal says.
-inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2, input_no_number = 3;
-/// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
-inline constexpr double emergency_stop_unread = 1;
-
-[[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
-
-inline constexpr std::array<AlarmInfo, 23> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 25> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -234,6 +203,20 @@ inline constexpr std::array<AlarmInfo, 23> machine_alarms{{
      ResetRule::self_clearing,
      Reaction::warn,
      {}},
+    {id(MachineAlarm::task_watchdog), "task_watchdog",
+     "The task has not ended within its watchdog time ({a} ms since its release, allowed {b} ms): its program was stopped",
+     "任务未在看门狗时间内结束(自释放起 {a} 毫秒,允许 {b} 毫秒):其程序已被停止",
+     "An endless loop, a wait or a long computation in this task, or other work kept it from the processor",
+     "Mend the task, do its work in pieces, or give it a longer `watchdog`; reset, then start the program. While the task still has not come "
+     "back its program cannot be started: end the run and start it again",
+     ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops it"},
+    {id(MachineAlarm::task_late), "task_late",
+     "A task was not finished at its next release, {a} times in a row (allowed {b}): its program was stopped",
+     "任务在下次释放时尚未完成,连续 {a} 次(允许 {b} 次):其程序已被停止",
+     "The task computes too long for its period, or other work keeps it from the processor",
+     "Shorten the task, raise `every`, or allow more (`overruns_allowed`, `overrun: count`); reset, then start the program. While the task "
+     "still has not come back its program cannot be started: end the run and start it again",
+     ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops it"},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

@@ -32,8 +32,9 @@ struct CycleHistograms {
 
 /// All of them, for readers: as long as the machine lives, any thread.
 struct MachineTimes {
-    const CycleHistograms* cycle = nullptr;               ///< nullptr: there is no cycle
-    const std::vector<SharedHistogram>* tasks = nullptr;  ///< runs, by MachineLayout::tasks
+    const CycleHistograms* cycle = nullptr;                       ///< nullptr: there is no cycle
+    const std::vector<SharedHistogram>* tasks = nullptr;          ///< runs, by MachineLayout::tasks
+    const std::vector<SharedHistogram>* task_lateness = nullptr;  ///< from release to run, likewise
 };
 
 }  // namespace taktwerk::runtime

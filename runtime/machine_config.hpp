@@ -86,15 +86,19 @@ struct AxisBinding {
 /// Each drive on the bus as a binding of its own: those of the axes, then the followers of gantries as "<axis>.follower".
 [[nodiscard]] std::vector<AxisBinding> sides_of(const std::vector<AxisBinding>& axes);
 
-/// What happens when a slower task has not finished at its next release.
-enum class OverrunReaction : std::uint8_t { count, stop_machine };
+/// What happens when a slower task has missed more releases in a row than it may.
+enum class OverrunReaction : std::uint8_t { count, stop_program, stop_machine };
 
 struct TaskConfig {
     std::string name;           ///< task as the program declares it
     std::string program;        ///< program name
     std::uint16_t divisor = 1;  ///< 1 = base task, inline in the cycle
-    OverrunReaction overrun = OverrunReaction::stop_machine;
+    OverrunReaction overrun = OverrunReaction::stop_program;
     std::uint16_t overruns_allowed = 3;  ///< in a row
+    /// How long a run of a slower task may take, from its release on; its program is stopped then. Nothing: as TaskWatch has it; 0: no limit.
+    std::optional<Duration> watchdog{};
+    std::uint16_t watchdog_sensitivity = 1;  ///< so many runs in a row, or one that takes so many times as long
+    std::optional<int> priority{};           ///< SCHED_FIFO, of a slower task's thread; 0: an ordinary thread. Nothing: by its period
 };
 
 /// A parameter as the machine file sets it. Which unit it has only its program knows: a value with a unit comes in every unit that it

@@ -2,6 +2,7 @@
 // The one copy of the machine's state that leaves the cycle: HMI, command line, trace, recorder all read this. Buffers are
 // sized when the machine is built; copying allocates nothing.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -51,7 +52,25 @@ struct CycleStatistics {
 
 struct TaskStatistics {
     std::uint64_t releases = 0, overruns = 0;
-    Duration run{}, run_max{};
+    Duration run{}, run_min{}, run_max{};
+    Duration lateness{}, lateness_max{};  ///< from the release to the first instruction; of a base task: of its cycle
+    std::uint64_t booked = 0;             ///< since the measured ones were begun anew ...
+    Duration run_total{};                 ///< ... and their sum
+    [[nodiscard]] Duration run_mean() const noexcept { return booked == 0 ? Duration{} : run_total / static_cast<Duration::rep>(booked); }
+    void book(Duration took, Duration late) noexcept {
+        run = took;
+        run_min = booked == 0 ? took : std::min(run_min, took);
+        run_max = std::max(run_max, took);
+        lateness = late;
+        lateness_max = std::max(lateness_max, late);
+        run_total += took;
+        ++booked;
+        ++releases;
+    }
+    void begin_anew() noexcept {
+        run_min = run_max = lateness_max = run_total = {};
+        booked = 0;
+    }
 };
 
 /// Of an axis' following error over all cycles since the start, or since people have begun anew. u; both 0: none so far.

@@ -25,6 +25,8 @@
 #include "runtime/check/machine_remarks.hpp"
 #include "runtime/check/recording_memory.hpp"
 #include "runtime/machine/machine.hpp"
+#include "runtime/run/task_priorities.hpp"
+#include "runtime/tasks/task_watch.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -261,6 +263,28 @@ std::string written_text(const runtime::MachineLayout::Variable& variable) {
     return fmt::format("; people write it ({:g} .. {:g})", variable.minimum, variable.maximum);
 }
 
+/// When a slower task has had its chances, and what follows.
+std::string slower_task_text(const MachineConfig& config, const runtime::TaskConfig& task) {
+    std::vector<runtime::TaskConfig> slower;
+    std::size_t place = 0;
+    for (const auto& other : config.tasks) {
+        if (other.divisor == 1) continue;
+        if (&other == &task) place = slower.size();
+        slower.push_back(other);
+    }
+    const int priority = runtime::task_priorities(slower, config.realtime.priority)[place];
+    std::string out = priority > 0 ? fmt::format(", priority {}", priority) : std::string(", an ordinary thread");
+    if (task.overrun == runtime::OverrunReaction::count) out += ", missed releases are counted";
+    else
+        out += fmt::format(", {} missed releases in a row are borne, then {}", task.overruns_allowed,
+                           task.overrun == runtime::OverrunReaction::stop_program ? "the program stops" : "all axes stop");
+    const auto watchdog = runtime::TaskWatch::watchdog_of(task, config.cycle);
+    if (watchdog == Duration{}) return out + ", no watchdog";
+    out += fmt::format(", watchdog {:g} ms", to_seconds(watchdog) * 1e3);
+    if (task.watchdog_sensitivity > 1) out += fmt::format(" ({} runs in a row)", task.watchdog_sensitivity);
+    return out;
+}
+
 void print_programs(const MachineConfig& config, const runtime::MachineLayout& layout) {
     if (config.programs.empty()) fmt::print("\nNo program: axes are moved from the command line.\n");
     else fmt::print("\nPrograms\n");
@@ -269,7 +293,7 @@ void print_programs(const MachineConfig& config, const runtime::MachineLayout& l
         for (const auto& task : config.tasks)
             if (task.program == program.name)
                 fmt::print("    task {:<12} every {:g} ms{}\n", task.name, to_seconds(config.cycle) * 1e3 * task.divisor,
-                           task.divisor == 1 ? ", inline in the cycle" : "");
+                           task.divisor == 1 ? ", inline in the cycle" : slower_task_text(config, task));
         for (const auto& p : layout.parameters)
             if (p.program == program.name)
                 fmt::print("    parameter {:<12} {:g} {} ({:g} .. {:g})  {}\n", p.name, p.value, p.unit, p.minimum, p.maximum, p.doc);

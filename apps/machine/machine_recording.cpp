@@ -9,6 +9,7 @@
 
 #include "core/crc32.hpp"
 #include "programs/api/abi.hpp"
+#include "runtime/recording/inbox_record.hpp"
 #include "runtime/recording/outcome_record.hpp"
 #include "runtime/replay/recording_head.hpp"
 
@@ -65,39 +66,49 @@ std::vector<std::pair<std::string, std::string>> facts_of(const std::string& mac
     return facts;
 }
 
-MachineRecording::MachineRecording(RecordingWriter writer)
-    : writer_(std::move(writer)), recorder_(ring_bytes, Recorder::Policy::drop_newest) {}
+MachineRecording::MachineRecording(runtime::RecordingWriter writer)
+    : recorder_(ring_bytes, Recorder::Policy::drop_newest), packer_(runtime::tick_channel), writer_(std::move(writer)) {}
 
-Result<std::unique_ptr<MachineRecording>> MachineRecording::create(const std::string& path, runtime::Machine& machine,
+Result<std::unique_ptr<MachineRecording>> MachineRecording::create(RecordedFile file, runtime::Machine& machine,
                                                                    std::vector<std::pair<std::string, std::string>> facts, Instant start,
                                                                    runtime::RecordedThreads threads) {
     auto info = runtime::recording_info(machine.config(), start, threads);
     info.facts.insert(info.facts.end(), std::make_move_iterator(facts.begin()), std::make_move_iterator(facts.end()));
-    auto writer = RecordingWriter::create(path, info);
+    auto writer = runtime::RecordingWriter::create(file.path, std::move(info), file.room);
     if (!writer) return std::move(writer).error();
-    for (const auto& file : runtime::start_files(machine.config())) {
-        const auto record = runtime::start_file_record(file);
-        if (auto done = writer->write({runtime::start_file_channel, start, record}); !done) return done.error();
-    }
     std::unique_ptr<MachineRecording> recording{new MachineRecording(std::move(writer).value())};
+    for (const auto& kept : runtime::start_files(machine.config()))
+        recording->take({runtime::start_file_channel, start, start_file_record(kept)});
     machine.record(recording->recorder_, threads);
     return recording;
 }
 
-Result<void> MachineRecording::drain() {
+void MachineRecording::take(const RecordView& record) {
+    if (packer_.records() == 0) block_began_ = record.time;
+    packer_.add(record);
+    if (packer_.full() || record.time - block_began_ >= block_time) take_block();
+}
+
+void MachineRecording::take_block() {
+    const auto records = packer_.records();
+    if (records == 0) return;
+    const runtime::PackedBlock block{packer_.take(), records};
+    if (broken_) return;
+    if (auto done = writer_.write(block); !done) broken_ = done.error();
+    if (broken_ && broken_->code == "recording.limit") (void)writer_.finish(runtime::RecordingEnd::limit, recorder_.dropped()).ok();
+}
+
+std::optional<Error> MachineRecording::drain() {
     const bool was_broken = broken_.has_value();
-    recorder_.drain([this](const RecordView& record) {
-        if (broken_) return;
-        if (auto done = writer_.write(record); !done) broken_ = done.error();
-    });
-    if (broken_ && !was_broken) return *broken_;
-    return {};
+    recorder_.drain([this](const RecordView& record) { take(record); });
+    return was_broken ? std::nullopt : broken_;
 }
 
 Result<void> MachineRecording::finish() {
-    (void)drain().ok();
+    (void)drain();
+    take_block();
     if (broken_) return *broken_;
-    return writer_.finish(recorder_.dropped());
+    return writer_.finish(runtime::RecordingEnd::whole, recorder_.dropped());
 }
 
 }  // namespace taktwerk::apps

@@ -7,10 +7,10 @@
 
 #include "config/reading/files_read.hpp"
 #include "core/recorder.hpp"
-#include "core/recording_file.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "runtime/machine/machine.hpp"
+#include "runtime/recording_file/recording_file.hpp"
 
 namespace taktwerk::apps {
 
@@ -19,28 +19,40 @@ namespace taktwerk::apps {
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> facts_of(const std::string& machine_file, const config::FilesRead& files,
                                                                         const runtime::MachineConfig& config, bool simulated);
 
+/// The file of --record, and how large it may get.
+struct RecordedFile {
+    std::string path;
+    runtime::RecordingRoom room;
+};
+
 class MachineRecording {
 public:
     /// Before the machine's first cycle; from here on it records. `facts`: facts_of(). `start`: machine time that people call 0.
     /// Errors: recording.write.
-    [[nodiscard]] static Result<std::unique_ptr<MachineRecording>> create(const std::string& path, runtime::Machine& machine,
+    [[nodiscard]] static Result<std::unique_ptr<MachineRecording>> create(RecordedFile file, runtime::Machine& machine,
                                                                           std::vector<std::pair<std::string, std::string>> facts,
                                                                           Instant start, runtime::RecordedThreads threads);
 
-    /// Writes what has come. Error recording.write, once: from then on records are taken and lost.
-    Result<void> drain();
+    /// Writes what has come, about a second of the machine at a time. Gives what went wrong, once: from then on this file gets no more, and the
+    /// machine runs on.
+    std::optional<Error> drain();
     /// The rest, and the end of the file. Gives the error of an earlier drain(), too.
     [[nodiscard]] Result<void> finish();
     /// Records that did not fit; from the first of them on the recording cannot be replayed.
     [[nodiscard]] std::uint64_t lost() const noexcept { return recorder_.dropped(); }
 
 private:
-    explicit MachineRecording(RecordingWriter writer);
+    explicit MachineRecording(runtime::RecordingWriter writer);
+    void take(const RecordView& record);
+    void take_block();
 
     static constexpr std::size_t ring_bytes = std::size_t{32} << 20;  ///< of 200 axes at 1 ms some 8 s
+    static constexpr Duration block_time = std::chrono::seconds{1};   ///< what a process that is killed loses at most
 
-    RecordingWriter writer_;
     Recorder recorder_;
+    runtime::RecordPacker packer_;
+    Instant block_began_{};
+    runtime::RecordingWriter writer_;
     std::optional<Error> broken_;
 };
 

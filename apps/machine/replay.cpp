@@ -20,6 +20,7 @@
 #include "apps/terminal/print_error.hpp"
 #include "core/math.hpp"
 #include "core/nearest_name.hpp"
+#include "runtime/recording_file/recording_file.hpp"
 #include "runtime/replay/recording_head.hpp"
 #include "runtime/replay/replay.hpp"
 
@@ -35,20 +36,40 @@ struct ReplayOptions {
     bool show = false, json = false, quiet = false;
 };
 
-const std::string* fact(const Recording& recording, std::string_view name) { return find_fact(recording.info, name); }
+const std::string* fact(const RecordSource& recording, std::string_view name) { return find_fact(recording.info(), name); }
 
-int show(const Recording& recording) {
-    fmt::print("{}, {}{}\n\n", count_text(recording.size(), "record"), count_text(recording.bytes.size(), "byte"),
-               recording.complete ? "" : "; its end is missing: the recording process died");
-    for (const auto& [name, value] : recording.info.facts) fmt::print("  {:<28} {}\n", name, value);
+/// Empty: with the end of its run.
+std::string how_it_ends(RecordingEnd end) {
+    switch (end) {
+        case RecordingEnd::whole: return {};
+        case RecordingEnd::kept: return "kept while the machine ran on";
+        case RecordingEnd::limit: return "ends where the room that it was given was used up (--record-disk)";
+        case RecordingEnd::torn: return "has no end: the process that wrote it died, or its disk was full";
+        case RecordingEnd::no_part: return "goes on in a part that is not beside it";
+    }
+    return {};
+}
+
+int show(RecordingReader& recording) {
+    const auto end = how_it_ends(recording.end());
+    fmt::print("{}, {}{}{}\n\n", count_text(recording.records(), "record"), count_text(recording.bytes(), "byte"),
+               recording.parts() > 1 ? fmt::format(" in {} files", recording.parts()) : "", end.empty() ? "" : "; it " + end);
+    for (const auto& [name, value] : recording.info().facts) fmt::print("  {:<28} {}\n", name, value);
     std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> counts;
-    for (const auto& frame : recording.frames) {
-        auto& [records, bytes] = counts[recording.info.channels[frame.channel]];
+    for (;;) {
+        const auto record = recording.next();
+        if (!record) {
+            print_error(record.error());
+            return exit_bad_file;
+        }
+        if (!record->has_value()) break;
+        auto& [records, bytes] = counts[recording.info().channels[(*record)->channel]];
         ++records;
-        bytes += frame.length;
+        bytes += (*record)->bytes.size();
     }
     fmt::print("\n");
-    for (const auto& [name, count] : counts) fmt::print("  {:<28} {:>10} records {:>12} bytes\n", name, count.first, count.second);
+    for (const auto& [name, count] : counts)
+        fmt::print("  {:<28} {:>10} records {:>12} bytes before they are compressed\n", name, count.first, count.second);
     return exit_ok;
 }
 
@@ -95,10 +116,11 @@ public:
         if (signals_.size() <= most_told) differences_.push_back({difference, start});
     }
 
-    int end(const Replay& replay, bool whole) const {
-        if (options_.json) return end_json(replay, whole);
+    /// `end`: why the recording has no more; empty: that of its run, or the replay ended before.
+    int end(const Replay& replay, const std::string& end) const {
+        if (options_.json) return end_json(replay, end.empty());
         for (const auto& other : others_) fmt::print("{}\n", other);
-        if (!whole) fmt::print("the recording has no end: the process that wrote it died. What is there was replayed.\n");
+        if (!end.empty()) fmt::print("the recording {}. What is there was replayed.\n", end);
         if (differences_.empty()) {
             fmt::print("identical: {} ({} before the machine was up), {:.3f} s: every output byte, every set-point and every frame\n",
                        count_text(replay.cycles(), "cycle"), replay.cycles_before(), to_seconds(replay.now() - replay.start()));
@@ -183,9 +205,9 @@ int fail(const std::vector<Error>& errors, const std::vector<std::string>& other
 
 int replay(const ReplayOptions& options) {
     math::set_stepping_thread_float_environment();
-    auto loaded = load_recording(options.recording);
+    auto loaded = RecordingReader::open(options.recording);
     if (!loaded) return fail({loaded.error()}, {});
-    const Recording recording = std::move(loaded).value();
+    auto& recording = **loaded;
     if (options.show) return show(recording);
     const auto* written = fact(recording, "machine_file");
     const auto file = !options.machine.empty() ? options.machine : written != nullptr ? *written : std::string{};
@@ -204,7 +226,7 @@ int replay(const ReplayOptions& options) {
             return exit_usage;
         }
     const RecordingInfo here{{}, facts_of(file, files, config, true)};
-    auto others = other_facts(recording.info, here);
+    auto others = other_facts(recording.info(), here);
     const auto until = options.until.empty() ? std::nullopt : time_of(options.until);
     auto made = Replay::make(std::move(config), recording);
     if (const auto* errors = std::get_if<1>(&made)) return fail(*errors, others);
@@ -234,7 +256,7 @@ int replay(const ReplayOptions& options) {
     if (step == Replay::Step::malformed) return fail({*replay.error()}, {});
     if (trace)
         if (auto ok = trace->finish(); !ok) return fail({ok.error()}, {});
-    const int code = report.end(replay, recording.complete || step != Replay::Step::ended);
+    const int code = report.end(replay, step == Replay::Step::ended ? how_it_ends(recording.end()) : std::string{});
     if (!options.until.empty() && !options.json) {
         if (!reached)
             fmt::print("`--until {}` was not reached: the recording ends at {:.3f} s\n", options.until,

@@ -54,6 +54,11 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
     sub->add_option("--record", options->record, "write everything that comes in to this file, for `taktwerk replay`");
+    sub->add_option("--record-size", options->record_size,
+                    "begin a further part (FILE.2, FILE.3 before the ending) where one gets larger than this: 500MB")
+        ->transform(CLI::AsSizeValue(true));
+    sub->add_option("--record-disk", options->record_disk, "the recording ends where all its parts are as large as this: 20GB")
+        ->transform(CLI::AsSizeValue(true));
     sub->add_option("--evidence", options->evidence,
                     "write what was on the bus around each alarm that stops something into this directory, also on a simulated bus");
     auto* hmi = sub->add_flag(

@@ -1,6 +1,7 @@
 #pragma once
 // What `taktwerk run` was asked for, and its two ways to do it.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@ struct RunOptions {
     std::string file, trace, pcap, record, retain, evidence, recordings, history, hmi;
     bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
+    std::uint64_t record_size = 0, record_disk = 0;  ///< bytes; 0: no bound
     std::string bundle, root;
     unsigned tries = runtime::usual_tries;
     std::shared_ptr<BundleRun> from_bundle{};  ///< with --bundle, once it is chosen

@@ -228,13 +228,19 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     StatusLine status;
     RealtimeRunner runner{machine, world};
     if (!options.record.empty()) {
-        auto created = MachineRecording::create(options.record, machine, std::move(facts), start, RecordedThreads::several);
+        auto created = MachineRecording::create({options.record, {options.record_size, options.record_disk}}, machine, std::move(facts),
+                                                start, RecordedThreads::several);
         if (!created) {
             print_error(created.error());
             return exit_bad_file;
         }
         files.recording = std::move(*created);
-        write_beside("record", files.recording);
+        writers.push_back(std::make_unique<FileThread>(
+            [&log, &clock, recording = files.recording] {
+                if (const auto failed = recording->drain()) log.say(clock.now(), "record", failed->text());
+                return Result<void>{};
+            },
+            [recording = files.recording] { return recording->finish(); }, [](const Error&) {}));
         runner.record_in_step();
     }
     bool said_stuck = false;

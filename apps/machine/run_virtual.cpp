@@ -39,7 +39,8 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
     if (!options.record.empty()) {
-        auto created = MachineRecording::create(options.record, *machine, std::move(facts), clock.now(), RecordedThreads::one);
+        auto created = MachineRecording::create({options.record, {options.record_size, options.record_disk}}, *machine, std::move(facts),
+                                                clock.now(), RecordedThreads::one);
         if (!created) {
             print_error(created.error());
             return exit_bad_file;
@@ -48,7 +49,8 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     }
     VirtualRunner runner{*machine, world, clock};
     runner.drain = [&] {
-        if (files.recording) (void)files.recording->drain().ok();  // an error comes again from finish()
+        if (!files.recording) return;
+        if (const auto failed = files.recording->drain()) log.say(clock.now(), "record", failed->text());
     };
     std::optional<hmi::AlarmHistory> history;  // only where it was asked for: a run in virtual time leaves nothing behind by itself
     if (!options.history.empty() && loaded.hmi.history.rows > 0)

@@ -5,6 +5,7 @@ namespace taktwerk::apps {
 
 enum ExitCode : int {
     exit_ok = 0,
+    exit_warnings = 1,    ///< `doctor`: fit, with warnings
     exit_usage = 2,       ///< wrong arguments
     exit_bad_file = 3,    ///< a configuration, program or trace is wrong or missing
     exit_bus = 4,         ///< the bus did not come up, or the NIC cannot be used

@@ -226,11 +226,25 @@ Table<TaskEntry> task_table() {
                              "1 cycles"),
                 field_at<T>(
                     "overrun", [](T & t) -> auto& { return t.task.overrun; },
-                    choice<OverrunReaction>({{"count", OverrunReaction::count}, {"stop_machine", OverrunReaction::stop_machine}}),
-                    "when it has not finished at its next release"),
+                    choice<OverrunReaction>({{"count", OverrunReaction::count},
+                                             {"stop_program", OverrunReaction::stop_program},
+                                             {"stop_machine", OverrunReaction::stop_machine}}),
+                    "when it was not finished at more releases in a row than allowed: nothing but counting, its program stops with its axes "
+                    "and outputs, or all axes stop"),
                 field_at<T>(
                     "overruns_allowed", [](T & t) -> auto& { return t.task.overruns_allowed; }, integer<std::uint16_t>(0, 65535),
                     "in a row, before that"),
+                with_default(field_at<T>(
+                                 "watchdog", [](T & t) -> auto& { return t.task.watchdog; }, maybe(duration(0ms, 1h)),
+                                 "how long a run may take from its release on; its program is stopped then. 0 ms: no limit"),
+                             "10 periods, at least 250 ms"),
+                field_at<T>(
+                    "watchdog_sensitivity", [](T & t) -> auto& { return t.task.watchdog_sensitivity; }, integer<std::uint16_t>(1, 65535),
+                    "so many runs in a row must take longer than `watchdog`, or one so many times as long"),
+                with_default(field_at<T>(
+                                 "priority", [](T & t) -> auto& { return t.task.priority; }, maybe(integer<int>(0, 99)),
+                                 "SCHED_FIFO priority of its thread, below the cycle's; 0 = leave"),
+                             "by its period, 49 and below"),
             },
             {},
             {}};

@@ -53,6 +53,10 @@ std::string times_json(const runtime::MachineLayout& layout, const runtime::Mach
     for (std::size_t i = 0; times.tasks != nullptr && i < times.tasks->size() && i < layout.tasks.size(); ++i)
         put_named(json, layout.tasks[i], (*times.tasks)[i]);
     json.close(']');
+    json.open("task_lateness", '[');
+    for (std::size_t i = 0; times.task_lateness != nullptr && i < times.task_lateness->size() && i < layout.tasks.size(); ++i)
+        put_named(json, layout.tasks[i], (*times.task_lateness)[i]);
+    json.close(']');
     json.close('}');
     return json.take();
 }

@@ -52,6 +52,7 @@ inline constexpr std::uint64_t program_interface_version = 9;
     add(sizeof(axes::MotionContext));
     add(sizeof(axes::MotionTables));
     add(sizeof(TaskContext));
+    add(sizeof(TaskInfo));
     add(sizeof(ParameterSpec));
     add(sizeof(OperatorValueSpec));
     add(static_cast<std::uint64_t>(__cplusplus));

@@ -9,6 +9,7 @@
 #include "axes/axis/motion_context.hpp"
 #include "core/point_line.hpp"
 #include "core/process_image.hpp"
+#include "programs/api/task_info.hpp"
 
 namespace taktwerk {
 
@@ -66,6 +67,11 @@ public:
         if (!std::isfinite(value)) undeclared = {Undeclared::What::not_a_number, 0};
         else write(point.index, point.index < output_lines.size() ? output_lines[point.index].raw_of(value) : 0);
     }
+    /// What is known of this task: how often it ran, how long that took, how late it was.
+    [[nodiscard]] const TaskInfo& task() const noexcept {
+        task_asked = true;
+        return *task_info;
+    }
     [[nodiscard]] double get(Parameter parameter) const noexcept { return value_at(parameters, parameter.index); }
 
     /// Raises the program's alarm `number` (0..63) for as long as `active` holds; texts come from Declaration::alarm. Any other number
@@ -91,8 +97,11 @@ public:
         std::uint8_t number = 0;  ///< of the alarm
     };
     mutable Undeclared undeclared;
+    const TaskInfo* task_info = &no_info;
+    mutable bool task_asked = false;  ///< task() was called: what it says of times goes into a recording
 
 private:
+    static constexpr TaskInfo no_info{};
     template <class T>
     [[nodiscard]] T value_at(std::span<const T> values, std::uint16_t index) const noexcept {
         if (index < values.size()) return values[index];

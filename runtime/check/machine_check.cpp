@@ -104,7 +104,30 @@ private:
             if (task.divisor == 0)
                 problems_.add("task.divisor", fmt::format("programs.{}.tasks.{}", task.program, task.name), "a divisor of 0 never runs",
                               "use 1 or more");
+            check_times(task);
         }
+    }
+
+    void check_times(const TaskConfig& task) {
+        const auto where = fmt::format("programs.{}.tasks.{}", task.program, task.name);
+        if (task.divisor == 1 && (task.watchdog || task.priority))
+            problems_.add("task.base", fmt::format("{}.{}", where, task.watchdog ? "watchdog" : "priority"),
+                          "a task that runs in each cycle runs inside the cycle, on its thread: it has no watchdog and no priority of its own",
+                          "remove it (`watch:` says when a cycle that is too long stops the machine), or give the task a longer `every`");
+        else if (task.watchdog && *task.watchdog != Duration{} && *task.watchdog < config_.cycle)
+            problems_.add("task.watchdog", where + ".watchdog", "it is shorter than the machine's cycle, in which it is counted",
+                          "give it a cycle or more, or 0 ms for no limit");
+        if (task.divisor == 1 || task.priority.value_or(0) == 0) return;
+        const int cycle = config_.realtime.priority, most = cycle - 2;
+        if (cycle == 0)
+            problems_.add("task.priority", where + ".priority",
+                          "the cycle has no real-time priority (`realtime.priority: 0`): this task would be above it",
+                          "remove it, or give the cycle a priority");
+        else if (*task.priority < 1 || *task.priority > most)
+            problems_.add("task.priority", where + ".priority",
+                          fmt::format("{} is not between 1 and {}: the cycle has {}, and the watch over the tasks stands between them",
+                                      *task.priority, most, cycle),
+                          "choose a lower one, or none: then the shortest period has the highest");
     }
 
     void check_emergency_stop() {

@@ -144,7 +144,13 @@ SignalRing& Machine::signals() noexcept { return impl_->rows.ring(); }
 const SignalRing& Machine::signals() const noexcept { return impl_->rows.ring(); }
 const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }
 void Machine::reset_step_statistics() noexcept { impl_->steps.reset(); }
-MachineTimes Machine::times() const noexcept { return {&impl_->times, &impl_->programs.task_times()}; }
+MachineTimes Machine::times() const noexcept {
+    const auto& tasks = impl_->programs.times();
+    return {&impl_->times, &tasks.runs(), &tasks.lateness()};
+}
+void Machine::tell_measured_times() noexcept { impl_->programs.times().tell_measured(); }
+const TaskConfig& Machine::slow_task(std::size_t index) const noexcept { return impl_->programs.slow_task(index).config(); }
+Instant Machine::slow_task_released(std::size_t index) const noexcept { return impl_->programs.slow_task(index).last_release(); }
 const MachineConfig& Machine::config() const noexcept { return impl_->body.config; }
 const MachineLayout& Machine::layout() const noexcept { return impl_->layout; }
 const ecat::Master& Machine::bus() const noexcept { return impl_->body.bus; }

@@ -92,6 +92,11 @@ public:
     /// The slower tasks, for threads of their own in real time: task `index` runs if it was released. True when it did.
     [[nodiscard]] std::size_t slow_task_count() const noexcept;
     bool run_slow_task(std::size_t index) noexcept;
+    /// Behind a run, on its thread: the scan time of the cycle that had released it.
+    [[nodiscard]] Instant slow_task_released(std::size_t index) const noexcept;
+    [[nodiscard]] const TaskConfig& slow_task(std::size_t index) const noexcept;
+    /// Before the first cycle, in real time: tasks that ask are told how long they took. Else that is 0.
+    void tell_measured_times() noexcept;
 
     // --- between the two ---------------------------------------------------------------------------------------------------
     /// Service side: queue a command for the next cycle. False: inbox full (answer queue_full).

@@ -122,7 +122,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
 void Machine::Impl::reset_statistics() noexcept {
     body.statistics.lateness_max = body.statistics.compute_max = {};
     times.reset();
-    programs.reset_statistics();
+    programs.times().reset();
 }
 
 void Machine::Impl::wait_for_bus(const CycleTick& tick) noexcept {
@@ -134,8 +134,8 @@ void Machine::Impl::wait_for_bus(const CycleTick& tick) noexcept {
 void Machine::Impl::compute(const CycleTick& tick) noexcept {
     const auto now = body.now;
     programs.take_answers();
+    body.requests.speak_for(no_program, now);  // a stop is a person's, not the last program's
     desk.take_levels(now);
-    body.requests.speak_for(no_program, now);
     desk.drain_inbox(now);
     done(Step::inbox);
 
@@ -156,7 +156,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     body.requests.speak_for(no_program, now);
     desk.renew_power();
     measuring.step();
-    programs.run_tasks();
+    programs.run_tasks(tick.missed);
     drives.serial().hold_watchdog_outputs();
     drives.hold_brake_outputs();
     done(Step::tasks);

@@ -184,7 +184,7 @@ Verdict OperatorDesk::start_program(const OperatorCommand& command) noexcept {
         return {Answer::not_possible_now, ErrorId::in_error_stop};
     if (program.state == ProgramState::fault) return {Answer::not_possible_now};
     // What runs and waits goes on; else its stop() may still be to come.
-    if (!program.running() && !programs_.start(command.index, command.after)) return {Answer::not_possible_now};
+    if (!program.running() && !programs_.start(command.index, command.after)) return {Answer::not_possible_now, ErrorId::state_forbids};
     program.requests.go_on();
     return {};
 }

@@ -39,12 +39,11 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
       retained_(host_.retained()),
       kept_by_slow_(host_.retained().size()),
       claims_(body.config.axes.size()),
-      objects_(body.config.programs.size(), body.bus.slave_count()) {
+      objects_(body.config.programs.size(), body.bus.slave_count()),
+      times_(host_.tasks().size()) {
     for (std::size_t p = 0; p < body.config.programs.size(); ++p)
         programs_.emplace_back(body.requests, body.axis_groups, claims_, static_cast<std::uint16_t>(p));
     build_tasks();
-    task_statistics_.resize(host_.tasks().size());
-    task_times_ = std::vector<SharedHistogram>(host_.tasks().size());
     for (const auto& variable : host_.variables()) variable_values_.push_back(ProgramHost::read(variable));
 }
 
@@ -76,7 +75,12 @@ void ProgramRunner::build_tasks() {
             {std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables), body_.axes.size(),
                                         io.inputs().size(), io.outputs().size(), host_.parameters().size(), objects_.of(task.program),
                                         body_.tables, values_.count_of(i), std::move(kept)),
-             i, 0, true, std::move(shows), std::move(keeps)});
+             i,
+             TaskWatch{task.config, body_.config.cycle},
+             true,
+             {},
+             std::move(shows),
+             std::move(keeps)});
     }
 }
 
@@ -144,6 +148,8 @@ void ProgramRunner::take_answers() noexcept {
         auto& slow = slow_tasks_[i];
         if (slow.finished || !slow.task->finished()) continue;
         slow.finished = true;
+        slow.watch.end(body_.cycles);
+        if (slow.task->times_asked()) record_times(slow.place, slow.task->info());
         if (recorder != nullptr) record_slow(*recorder, body_.now, static_cast<std::uint16_t>(i));
     }
     objects_.take_answers(body_.recorder, body_.now);
@@ -209,7 +215,7 @@ void ProgramRunner::stop_all() noexcept {
 }
 
 void ProgramRunner::reset() noexcept {
-    for (auto& slow : slow_tasks_) slow.overruns = 0;
+    for (auto& slow : slow_tasks_) slow.watch.forgive();
     for (auto& program : programs_)
         if (program.state == ProgramState::fault) program.state = ProgramState::stopped;
 }
@@ -249,9 +255,13 @@ void ProgramRunner::take_handshakes() noexcept {
             program.state = ProgramState::running;
             program.fault = {};
             program.undeclared = {};
-            objects_.release_all(p);
-            for (auto& slow : slow_tasks_)
-                if (slow.task->program() == p) slow.task->restart();
+            program.stopped_by.clear();
+            objects_.open(p);
+            for (auto& slow : slow_tasks_) {
+                if (slow.task->program() != p) continue;
+                slow.task->restart();
+                slow.watch.forgive();
+            }
             for (auto& base : base_tasks_)
                 if (host_.tasks()[base.place].program == p) base.scans = 0;
         }
@@ -285,6 +295,14 @@ void ProgramRunner::call_hook(std::size_t p) {
 bool ProgramRunner::replay_hook(std::size_t program, bool stop) {
     if (program >= programs_.size() || !host_.programs()[program].instance) return false;
     run_hook(program, stop ? Handshake::stop_asked : Handshake::start_asked);
+    return true;
+}
+
+bool ProgramRunner::replay_times(const TaskTimesRecord& record) noexcept {
+    if (record.task >= host_.tasks().size()) return false;
+    for (auto& slow : slow_tasks_)
+        if (slow.place == record.task) return slow.task->tell_again(record), true;
+    times_.replay(record);
     return true;
 }
 
@@ -329,6 +347,12 @@ std::string ProgramRunner::at_work() const {
 }
 
 std::string ProgramRunner::fault(std::size_t program) const {
+    if (const auto task = programs_[program].stopped_by.task()) {
+        const auto& config = host_.tasks()[*task].config;
+        return programs_[program].stopped_by.verdict() == TaskVerdict::watchdog
+                   ? fmt::format("task '{}' did not end within its watchdog time", config.name)
+                   : fmt::format("task '{}' missed more than {} releases in a row", config.name, config.overruns_allowed);
+    }
     const std::lock_guard lock{fault_words_};
     return host_.programs()[program].fault;
 }

@@ -8,15 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "core/shared_histogram.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/operator_values.hpp"
 #include "runtime/machine/retained_image.hpp"
+#include "runtime/machine/task_times.hpp"
 #include "runtime/tasks/object_requests.hpp"
 #include "runtime/tasks/program_host.hpp"
 #include "runtime/tasks/program_record.hpp"
 #include "runtime/tasks/slow_task.hpp"
+#include "runtime/tasks/task_watch.hpp"
 
 namespace taktwerk::runtime {
 
@@ -29,7 +30,7 @@ public:
     /// What came from beside the cycle: start() and stop() that have ended, slower tasks, answers of drives to the programs' object requests.
     void take_answers() noexcept;
     /// Step 6: base tasks run here, inline; slower ones are applied and released.
-    void run_tasks() noexcept;
+    void run_tasks(std::uint32_t missed_ticks) noexcept;
     /// Alarms that programs raise, and those about them.
     void raise_alarms() noexcept;
     /// What the variables are at the end of this cycle.
@@ -59,11 +60,8 @@ public:
     [[nodiscard]] const ProgramRecords& programs() const noexcept { return programs_; }
     [[nodiscard]] std::vector<double>& parameters() noexcept { return host_.parameters(); }
     [[nodiscard]] const std::vector<double>& variables() const noexcept { return variable_values_; }
-    [[nodiscard]] const std::vector<TaskStatistics>& task_statistics() const noexcept { return task_statistics_; }
-    /// Runs of each task. Any thread.
-    [[nodiscard]] const std::vector<SharedHistogram>& task_times() const noexcept { return task_times_; }
-    /// Maxima and histograms begin anew. Cycle, real-time safe.
-    void reset_statistics() noexcept;
+    [[nodiscard]] TaskTimes& times() noexcept { return times_; }
+    [[nodiscard]] const TaskTimes& times() const noexcept { return times_; }
     struct LongestTask {
         std::size_t place = 0;  ///< in the layout's tasks
         Duration run{};
@@ -79,10 +77,13 @@ public:
     void call_hooks();
     /// For a replay: that one has run. False: there is no such program.
     [[nodiscard]] bool replay_hook(std::size_t program, bool stop);
+    /// For a replay: what the task is told in its next scan. False: there is no such task.
+    [[nodiscard]] bool replay_times(const TaskTimesRecord& record) noexcept;
     /// Object requests on their way to the drives. Service side.
     void carry_requests() { objects_.step(body_.bus); }
     [[nodiscard]] std::size_t slow_task_count() const noexcept { return slow_tasks_.size(); }
     bool run_slow_task(std::size_t index) noexcept { return slow_tasks_[index].task->run_if_released(); }
+    [[nodiscard]] const SlowTask& slow_task(std::size_t index) const noexcept { return *slow_tasks_[index].task; }
     /// The bus has laid out its image. Before the first cycle with tasks.
     void learn_outputs() noexcept;
     /// As Machine has them.
@@ -95,15 +96,16 @@ public:
 
 private:
     struct BaseTask {
-        std::size_t place = 0;                    // in host_.tasks(), task_statistics_, the layout
+        std::size_t place = 0;                    // in host_.tasks(), times_, the layout
         std::uint64_t scans = 0;                  // since its program's start
         std::vector<SlowTask::WarmBlock> warm{};  // before its first scan
     };
     struct SlowPlace {
         std::unique_ptr<SlowTask> task;
         std::size_t place = 0;
-        std::uint16_t overruns = 0;      // in a row
+        TaskWatch watch;
         bool finished = true;            // as the cycle knows it
+        double taken = 0;                // of what its alarm tells: overruns in a row, or milliseconds
         std::vector<std::size_t> shows;  // the variables that are read after its runs
         std::vector<std::size_t> keeps;  // what is kept of its memory: places in host_.retained()
     };
@@ -125,12 +127,16 @@ private:
     [[nodiscard]] bool slow_tasks_at_rest(std::size_t program) const noexcept;
     void tell_fault(std::size_t program, std::string words);
     // program_tasks.cpp
-    void run_base_task(BaseTask& base) noexcept;
+    void run_base_task(BaseTask& base, std::uint32_t missed_ticks) noexcept;
     void release_slow_task(SlowPlace& slow) noexcept;
+    /// Its program stops when it does not keep its time.
+    void judge(SlowPlace& slow) noexcept;
+    [[nodiscard]] double milliseconds(std::uint64_t cycles) const noexcept;
+    void raise_alarms_of_task(const SlowPlace& slow) noexcept;
     void write_values_at_rest() noexcept;
     void raise_alarms_of(std::size_t program) noexcept;
-    /// A run of a task is over.
-    void book(std::size_t place, Duration run) noexcept;
+    /// What the task was told of its times, where somebody records them: it has asked.
+    void record_times(std::size_t place, const TaskInfo& told) noexcept;
 
     MachineBody& body_;
     HandMotion& hands_;
@@ -143,8 +149,7 @@ private:
     ObjectRequests objects_;
     std::vector<BaseTask> base_tasks_;
     std::vector<SlowPlace> slow_tasks_;
-    std::vector<TaskStatistics> task_statistics_;  // as host_.tasks()
-    std::vector<SharedHistogram> task_times_;      // likewise
+    TaskTimes times_;  // of host_.tasks()
     LongestTask longest_base_task_;
     std::vector<double> variable_values_;       // as this cycle shows them
     std::vector<bool> shown_by_slow_;           // which of them are read after a slow task's run

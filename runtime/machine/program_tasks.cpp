@@ -10,7 +10,7 @@
 
 namespace taktwerk::runtime {
 
-void ProgramRunner::run_base_task(BaseTask& base) noexcept {
+void ProgramRunner::run_base_task(BaseTask& base, std::uint32_t missed_ticks) noexcept {
     const auto& task = host_.tasks()[base.place];
     auto& program = host_.programs()[task.program];
     auto& record = programs_[task.program];
@@ -33,6 +33,8 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
     context.parameters = host_.parameters();
     context.alarms = program.alarms;
     context.first_scan = context.cycle == 0;
+    const auto info = times_.info(base.place, body_.config.cycle, missed_ticks);
+    context.task_info = &info;
     values_.apply(base.place);
     for (const auto& block : base.warm) block.type->warm_start(block.address, context.now);
     base.warm.clear();
@@ -48,19 +50,12 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
         failed(task.program, why);
     }
     pulse_task_.store(-1, std::memory_order_relaxed);
+    if (context.task_asked) record_times(base.place, info);
 }
 
-void ProgramRunner::book(std::size_t place, Duration run) noexcept {
-    auto& numbers = task_statistics_[place];
-    numbers.run = run;
-    numbers.run_max = std::max(numbers.run_max, run);
-    ++numbers.releases;
-    task_times_[place].record(run, body_.cycles + 1);  // of this cycle, which is not over
-}
-
-void ProgramRunner::reset_statistics() noexcept {
-    for (auto& numbers : task_statistics_) numbers.run_max = {};
-    for (auto& times : task_times_) times.reset();
+void ProgramRunner::record_times(std::size_t place, const TaskInfo& told) noexcept {
+    if (body_.recorder == nullptr || !body_.threads_beside) return;  // in virtual time it is 0
+    record_task_times(*body_.recorder, body_.now, TaskTimesRecord::of(static_cast<std::uint16_t>(place), told));
 }
 
 void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
@@ -71,13 +66,14 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     body_.requests.speak_for(static_cast<std::uint16_t>(p), body_.now);
     if (runs) task.renew(program.requests);
     if (!task.due(body_.cycles)) return;
-    auto& numbers = task_statistics_[slow.place];
     if (!slow.finished) {
-        ++numbers.overruns;
-        if (slow.overruns < 0xFFFF) ++slow.overruns;
+        if (!runs) return;  // there is no release to miss
+        times_.overrun(slow.place);
+        slow.watch.missed();
         return;
     }
-    slow.overruns = 0;
+    const auto missed = slow.watch.overruns();
+    slow.watch.in_time();
     if (!runs) {
         task.forget();
         return;
@@ -91,13 +87,29 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     auto& alarms = host_.programs()[p].alarms;
     auto& io = body_.io;
     task.apply(program.requests, io.outputs(), alarms);
-    book(slow.place, task.last_run());
+    times_.book(slow.place, task.last_run(), task.last_lateness(), body_.cycles + 1);  // of this cycle, which is not over
     task.set_write_count(values_.take(slow.place, task.writes()));
     CycleContext context;
     context.now = body_.now;
     context.period = body_.config.cycle;
+    task.tell(times_.info(slow.place, body_.config.cycle * static_cast<Duration::rep>(task.config().divisor), missed));
     slow.finished = false;
+    slow.watch.begin(body_.cycles);
     task.release(context, body_.views, {io.inputs(), io.input_values()}, io.outputs(), host_.parameters(), alarms);
+}
+
+// Its image is its own: what it still does reaches nobody. The axes that its program powers or moves stop along their ramps, the outputs that no
+// other program drives become safe, everything else goes on.
+void ProgramRunner::judge(SlowPlace& slow) noexcept {
+    const auto p = slow.task->program();
+    auto& program = programs_[p];
+    if (!program.running()) return;
+    const auto verdict = slow.watch.verdict(body_.cycles);
+    if (verdict == TaskVerdict::in_time) return;
+    program.stopped_by.set(slow.place, verdict);
+    slow.taken = verdict == TaskVerdict::late ? slow.watch.overruns() : milliseconds(slow.watch.cycles_taken(body_.cycles));
+    objects_.close(p);
+    stop(p, ProgramState::fault);
 }
 
 // Only while neither a task nor start() nor stop() of the program is at work: they have its variables then.
@@ -111,21 +123,24 @@ void ProgramRunner::write_values_at_rest() noexcept {
     }
 }
 
-void ProgramRunner::run_tasks() noexcept {
+void ProgramRunner::run_tasks(std::uint32_t missed_ticks) noexcept {
     take_handshakes();
     if (body_.emergency) values_.let_go_all();
     values_.end_leases(body_.now);
     write_values_at_rest();
-    for (auto& slow : slow_tasks_) release_slow_task(slow);
+    for (auto& slow : slow_tasks_) {
+        release_slow_task(slow);
+        judge(slow);
+    }
     longest_base_task_ = {};
     for (auto& base : base_tasks_) {
         if (!programs_[host_.tasks()[base.place].program].running()) continue;
         const Stopwatch watch;
-        run_base_task(base);
-        auto& numbers = task_statistics_[base.place];
-        book(base.place, Stopwatch{watch}.lap());
-        if (numbers.run > body_.config.cycle) ++numbers.overruns;
-        if (numbers.run > longest_base_task_.run) longest_base_task_ = {base.place, numbers.run};
+        run_base_task(base, missed_ticks);
+        const auto run = Stopwatch{watch}.lap();
+        times_.book(base.place, run, body_.statistics.lateness, body_.cycles + 1);
+        if (run > body_.config.cycle) times_.overrun(base.place);
+        if (run > longest_base_task_.run) longest_base_task_ = {base.place, run};
     }
 }
 
@@ -134,7 +149,8 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
     const auto index = static_cast<std::uint16_t>(p);
     const auto& program = host_.programs()[p];
     const auto& record = programs_[p];
-    if (record.state == ProgramState::fault) body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
+    if (record.state == ProgramState::fault && !record.stopped_by.task())
+        body_.raise(MachineAlarm::program_fault, AlarmSource::program, index);
     auto undeclared = record.undeclared;
     for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
         const auto& text = program.alarm_texts[n];
@@ -153,13 +169,26 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
                     undeclared.what == Undeclared::What::alarm ? 1 : 0);
 }
 
+double ProgramRunner::milliseconds(std::uint64_t cycles) const noexcept {
+    return static_cast<double>(cycles) * to_seconds(body_.config.cycle) * 1e3;
+}
+
+void ProgramRunner::raise_alarms_of_task(const SlowPlace& slow) noexcept {
+    const auto& task = slow.task->config();
+    const auto place = static_cast<std::uint16_t>(slow.place);
+    const auto& program = programs_[slow.task->program()];
+    const auto overruns = slow.watch.overruns();
+    if (task.overrun == OverrunReaction::stop_machine && overruns > task.overruns_allowed && program.running())
+        body_.raise(MachineAlarm::task_overrun, AlarmSource::task, place, overruns, task.overruns_allowed);
+    // Also behind a reset, for as long as its thread has not come back: its program cannot be started, and this says why.
+    if (program.stopped_by.task() != slow.place || (program.state != ProgramState::fault && slow.finished)) return;
+    if (program.stopped_by.verdict() == TaskVerdict::late)
+        body_.raise(MachineAlarm::task_late, AlarmSource::task, place, slow.taken, task.overruns_allowed);
+    else body_.raise(MachineAlarm::task_watchdog, AlarmSource::task, place, slow.taken, milliseconds(slow.watch.watchdog()));
+}
+
 void ProgramRunner::raise_alarms() noexcept {
-    for (const auto& slow : slow_tasks_) {
-        const auto& task = slow.task->config();
-        if (task.overrun == OverrunReaction::stop_machine && slow.overruns > task.overruns_allowed)
-            body_.raise(MachineAlarm::task_overrun, AlarmSource::task, static_cast<std::uint16_t>(slow.place), slow.overruns,
-                        task.overruns_allowed);
-    }
+    for (const auto& slow : slow_tasks_) raise_alarms_of_task(slow);
     for (std::size_t p = 0; p < programs_.size(); ++p) raise_alarms_of(p);
 }
 

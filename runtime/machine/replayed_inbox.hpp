@@ -35,6 +35,7 @@ public:
         return true;
     }
     [[nodiscard]] bool put(const HookRecord& record) { return programs_.replay_hook(record.program, record.stop); }
+    [[nodiscard]] bool put(const TaskTimesRecord& record) noexcept { return programs_.replay_times(record); }
     [[nodiscard]] bool put(const SlowRecord& record) noexcept {
         return record.task < programs_.slow_task_count() && programs_.run_slow_task(record.task);
     }

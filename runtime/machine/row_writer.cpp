@@ -135,7 +135,7 @@ void RowWriter::step() noexcept {
     row.put(Packed{}.add(short_time(statistics.lateness.count()), 32).add(short_time(statistics.compute.count()), 32).word());
     const auto& bus = body_.bus.statistics();
     row.put(Packed{}.add(short_time(bus.dc_phase_error_ns), 32).add(bus.frames_lost, 32).word());
-    const auto& tasks = programs_.task_statistics();
+    const auto& tasks = programs_.times().statistics();
     for (std::size_t i = 0; i < tasks.size(); i += 2)
         row.put(Packed{}
                     .add(short_time(tasks[i].run.count()), 32)

@@ -16,7 +16,7 @@ void SnapshotWriter::prepare() {
     prototype.parameters.resize(programs_.host().parameters().size());
     prototype.variables.resize(programs_.variables().size());
     prototype.programs.resize(programs_.programs().size());
-    prototype.tasks.resize(programs_.task_statistics().size());
+    prototype.tasks.resize(programs_.times().statistics().size());
     prototype.alarms.resize(AlarmLog::capacity);
     prototype.simulated = body_.config.bus.interface.empty();
     for (int i = 0; i < 3; ++i) {  // each of the three buffers gets its full size once
@@ -55,7 +55,7 @@ void SnapshotWriter::step() noexcept {
     std::ranges::copy(programs_.host().parameters(), s.parameters.begin());
     std::ranges::copy(programs_.variables(), s.variables.begin());
     std::ranges::transform(programs_.programs(), s.programs.begin(), &ProgramRecord::state);
-    std::ranges::copy(programs_.task_statistics(), s.tasks.begin());
+    std::ranges::copy(programs_.times().statistics(), s.tasks.begin());
     s.measure = measuring_.state();
     const auto alarms = body_.log.alarms();
     s.alarm_count = alarms.size();

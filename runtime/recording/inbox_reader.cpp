@@ -199,6 +199,17 @@ std::optional<SlowRecord> read_slow(std::span<const std::byte> bytes) {
     return in.ended(record);
 }
 
+std::optional<TaskTimesRecord> read_task_times(std::span<const std::byte> bytes) {
+    Reading in{bytes};
+    TaskTimesRecord record;
+    record.task = in.take<std::uint16_t>();
+    record.overruns = in.take<std::uint64_t>();
+    for (auto* time :
+         {&record.run.last, &record.run.minimum, &record.run.maximum, &record.run.mean, &record.lateness, &record.lateness_max})
+        *time = Duration{in.take<std::int64_t>()};
+    return in.ended(record);
+}
+
 std::optional<WireRecord> read_wire(std::span<const std::byte> bytes) {
     Reading in{bytes};
     WireRecord record;

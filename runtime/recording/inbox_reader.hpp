@@ -16,6 +16,7 @@
 #include "runtime/cycle_tick.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/recording/outcome_record.hpp"
+#include "runtime/recording/task_times_record.hpp"
 #include "runtime/stop_levels.hpp"
 
 namespace taktwerk::runtime {
@@ -76,6 +77,7 @@ struct AxisSetpoint {
 [[nodiscard]] std::optional<CallRecord> read_call(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<HookRecord> read_hook(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<SlowRecord> read_slow(std::span<const std::byte> bytes);
+[[nodiscard]] std::optional<TaskTimesRecord> read_task_times(std::span<const std::byte> bytes);
 [[nodiscard]] std::optional<WireRecord> read_wire(std::span<const std::byte> bytes);
 /// A name without folders.
 [[nodiscard]] std::optional<StartFileRecord> read_start_file(std::span<const std::byte> bytes);

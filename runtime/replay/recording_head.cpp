@@ -55,7 +55,7 @@ std::vector<StartFile> start_files(const MachineConfig& config) {
     if (config.retain.empty()) return out;
     const std::filesystem::path folder{config.retain.directory};
     for (const char* name : {"retain.0", "retain.1", "positions.0", "positions.1"})
-        if (auto text = SlotFiles::read(folder / name)) out.push_back({name, std::move(*text)});
+        if (auto text = SlotFiles::read(folder / name); text && text->has_value()) out.push_back({name, std::move(**text)});
     return out;
 }
 

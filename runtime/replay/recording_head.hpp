@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/recording_file.hpp"
 #include "core/time.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/recording_file/recording.hpp"
 
 namespace taktwerk::runtime {
 

@@ -13,6 +13,7 @@
 #include "runtime/replay/recording_head.hpp"
 #include "runtime/replay/replay_transport.hpp"
 #include "runtime/replay/stand_ins.hpp"
+#include "runtime/replay/step_reader.hpp"
 
 namespace taktwerk::runtime {
 
@@ -30,18 +31,14 @@ std::optional<std::int64_t> number_of(const RecordingInfo& info, std::string_vie
     return value;
 }
 
-const RecordView* first_of(const Recording& recording, RecordChannel channel, RecordView& into) {
-    for (std::size_t i = 0; i < recording.size(); ++i) {
-        into = recording.record(i);
-        if (into.channel == channel) return &into;
-        if (into.channel == tick_channel) return nullptr;
-    }
-    return nullptr;
+const RecordView* first_of(std::span<const RecordView> records, RecordChannel channel) {
+    const auto found = std::ranges::find(records, channel, &RecordView::channel);
+    return found == records.end() ? nullptr : &*found;
 }
 
 /// What has to be so before anything is built.
-std::optional<Error> unfit(const MachineConfig& config, const Recording& recording) {
-    const auto& info = recording.info;
+std::optional<Error> unfit(const MachineConfig& config, const RecordSource& recording) {
+    const auto& info = recording.info();
     const auto* machine = find_fact(info, head_fact::machine);
     if (machine == nullptr)
         return Error{"replay.not_of_a_machine", "recording", "this recording is not of a machine",
@@ -49,10 +46,10 @@ std::optional<Error> unfit(const MachineConfig& config, const Recording& recordi
     if (info.channels != inbox_channels())
         return Error{"replay.channels", "recording", "what is recorded in it is arranged otherwise than this taktwerk does it",
                      "replay it with the taktwerk that recorded it; `taktwerk replay --show` says which"};
-    if (recording.lost > 0)
+    if (recording.lost() > 0)
         return Error{
             "replay.lost", "recording",
-            fmt::format("{} records did not reach the file while it was recorded: from there on nothing is certain", recording.lost),
+            fmt::format("{} records did not reach the file while it was recorded: from there on nothing is certain", recording.lost()),
             "record onto a disk that keeps up"};
     if (*machine != config.name)
         return Error{"replay.other_machine", "recording", fmt::format("it is of machine '{}', and this is '{}'", *machine, config.name),
@@ -89,26 +86,30 @@ struct Folder {
 }  // namespace
 
 struct Replay::Impl {
-    Impl(const Recording& from, const WireRecord& wire, const MachineConfig& config)
-        : recording(from), transport(wire), stand_ins(config), again(one_step, Recorder::Policy::drop_newest) {
-        start = Instant{Duration{number_of(from.info, head_fact::start).value_or(0)}};
-    }
+    Impl(RecordSource& from, StepReader&& start_records, const WireRecord& wire, const MachineConfig& config)
+        : info(from.info()),
+          steps(std::move(start_records)),
+          transport(wire),
+          stand_ins(config),
+          again(one_step, Recorder::Policy::drop_newest),
+          start{Duration{number_of(info, head_fact::start).value_or(0)}} {}
 
-    [[nodiscard]] bool begins_a_step(std::size_t record) const noexcept;
     [[nodiscard]] Step step();
-    /// Everything of [first, last) that comes from outside goes in.
-    [[nodiscard]] bool put(std::size_t first, std::size_t last);
+    [[nodiscard]] Step malformed(Error why);
+    /// Everything of this step that comes from outside goes in.
+    [[nodiscard]] bool put(std::span<const RecordView> records);
     [[nodiscard]] bool put(const RecordView& record);
     [[nodiscard]] bool perform(const RecordView& record);
-    void compare(std::size_t first, std::size_t last);
+    void compare(std::span<const RecordView> records);
 
-    const Recording& recording;
+    std::unique_ptr<RecordSource> owned;
+    const RecordingInfo& info;
+    StepReader steps;
     std::unique_ptr<Folder> folder;
     ReplayTransport transport;
     StandIns stand_ins;
     Recorder again;
     std::unique_ptr<Machine> machine;
-    std::size_t next = 0;
     bool armed = false;
     std::uint64_t cycles = 0, cycles_before = 0;
     Instant now{}, start{};
@@ -120,83 +121,82 @@ struct Replay::Impl {
 Replay::Replay(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Replay::~Replay() = default;
 
-std::variant<std::unique_ptr<Replay>, std::vector<Error>> Replay::make(MachineConfig config, const Recording& recording) {
+Replay::Made Replay::make(MachineConfig config, RecordSource& recording) { return make(std::move(config), recording, nullptr); }
+Replay::Made Replay::make(MachineConfig config, const Recording& recording) {
+    auto source = std::make_unique<MemorySource>(recording);
+    auto& from = *source;
+    return make(std::move(config), from, std::move(source));
+}
+
+Replay::Made Replay::make(MachineConfig config, RecordSource& recording, std::unique_ptr<RecordSource> owned) {
     const auto refused = [](Error error) { return std::vector<Error>{std::move(error)}; };
     if (auto wrong = unfit(config, recording)) return refused(std::move(*wrong));
-    RecordView first;
-    const auto* found = first_of(recording, wire_channel, first);
+    const auto& info = recording.info();
+    StepReader steps{recording};
+    if (auto read = steps.read_start(); !read) return refused(std::move(read).error());
+    const auto* found = first_of(steps.records(), wire_channel);
     const auto wire = found != nullptr ? read_wire(found->bytes) : std::nullopt;
     if (!wire) return refused({"replay.malformed", "recording", "it does not say what the machine was connected to", "use a backup"});
 
-    auto replay = std::make_unique<Impl>(recording, *wire, config);
     config.retain.directory.clear();
-    if (const auto* mode = find_fact(recording.info, head_fact::mode); mode != nullptr)
+    if (const auto* mode = find_fact(info, head_fact::mode); mode != nullptr)
         config.start_mode = *mode == "automatic" ? Mode::automatic : *mode == "setup" ? Mode::setup : Mode::manual;
     config.evidence.directory.clear();
     config.recording.directory.clear();
-    if (const auto* retain = find_fact(recording.info, head_fact::retain); retain != nullptr && *retain != "none") {
-        replay->folder = Folder::make();
-        bool written = replay->folder != nullptr;
-        for (std::size_t i = 0; i < recording.size() && written; ++i) {
-            const auto record = recording.record(i);
-            if (record.channel == tick_channel) break;
-            if (record.channel != start_file_channel) continue;
+    std::unique_ptr<Folder> folder;
+    if (const auto* retain = find_fact(info, head_fact::retain); retain != nullptr && *retain != "none") {
+        folder = Folder::make();
+        bool written = folder != nullptr;
+        for (const auto& record : steps.records()) {
+            if (record.channel != start_file_channel || !written) continue;
             const auto file = read_start_file(record.bytes);
             if (!file) return refused({"replay.malformed", "recording", "what the machine began with cannot be read", "use a backup"});
-            written = replay->folder->write(*file);
+            written = folder->write(*file);
         }
         if (!written)
             return refused({"replay.folder", fs::temp_directory_path().string(), "there is no room for what the machine began with",
                             "make room, or set TMPDIR to another folder"});
-        config.retain.directory = replay->folder->path.string();
+        config.retain.directory = folder->path.string();
         config.retain.start = *retain == "cold" ? RetainStart::cold : *retain == "origin" ? RetainStart::origin : RetainStart::warm;
     }
+    auto replay = std::make_unique<Impl>(recording, std::move(steps), *wire, config);
+    replay->owned = std::move(owned);
+    replay->folder = std::move(folder);
     auto built = Machine::build(std::move(config), replay->transport, replay->stand_ins.lines(), replay->stand_ins.exchanges());
     if (auto* errors = std::get_if<1>(&built)) return std::move(*errors);
     replay->machine = std::move(std::get<0>(built));
-    const auto* threads = find_fact(recording.info, head_fact::threads);
+    const auto* threads = find_fact(info, head_fact::threads);
     const bool one = threads != nullptr && *threads == head_fact::one_thread;
     replay->machine->record(replay->again, one ? RecordedThreads::one : RecordedThreads::several);
     replay->machine->replayed().begin();
     replay->again.clear();  // the wire's
-    while (replay->next < recording.size() && !replay->begins_a_step(replay->next)) ++replay->next;
     return std::unique_ptr<Replay>{new Replay(std::move(replay))};
 }
 
-bool Replay::Impl::begins_a_step(std::size_t record) const noexcept {
-    const auto channel = recording.frames[record].channel;
-    return channel == tick_channel || channel == call_channel;
+Replay::Step Replay::Impl::malformed(Error why) {
+    error = std::move(why);
+    return Step::malformed;
 }
 
 Replay::Step Replay::Impl::step() {
-    if (next >= recording.size()) return Step::ended;
-    const auto first = next;
-    auto last = first + 1;
-    while (last < recording.size() && !begins_a_step(last)) ++last;
-    // A file that was cut off within a cycle does not have all of it.
-    if (last == recording.size() && !recording.complete) {
-        next = last;
-        return Step::ended;
-    }
-    next = last;
-    const auto head = recording.record(first);
-    if (!put(first + 1, last) || !perform(head)) {
-        if (!error)
-            error =
-                Error{"replay.malformed", "recording",
-                      fmt::format("record {} ({:.6f} s) is not what this machine can have recorded", first, to_seconds(head.time - start)),
-                      "it is of another machine file, or was altered"};
-        return Step::malformed;
-    }
+    const auto there = steps.next();
+    if (!there) return malformed(there.error());
+    if (!*there) return Step::ended;
+    const auto records = steps.records();
+    if (!put(records.subspan(1)) || !perform(records.front()))
+        return malformed({"replay.malformed", "recording",
+                          fmt::format("record {} ({:.6f} s) is not what this machine can have recorded", steps.first(),
+                                      to_seconds(records.front().time - start)),
+                          "it is of another machine file, or was altered"});
     transport.clear();
     difference.reset();
-    compare(first, last);
+    compare(records);
     return difference ? Step::differs : Step::more;
 }
 
-bool Replay::Impl::put(std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i)
-        if (!put(recording.record(i))) return false;
+bool Replay::Impl::put(std::span<const RecordView> records) {
+    for (const auto& record : records)
+        if (!put(record)) return false;
     machine->replayed().complete();
     return true;
 }
@@ -213,6 +213,7 @@ bool Replay::Impl::put(const RecordView& record) {
         case modbus_word_channel: return into(read_word(record.bytes));
         case disk_channel: return into(read_disk(record.bytes));
         case hook_channel: return into(read_hook(record.bytes));
+        case task_times_channel: return into(read_task_times(record.bytes));
         case slow_channel: return into(read_slow(record.bytes));
         default: return true;  // what the machine makes of it
     }
@@ -245,24 +246,21 @@ bool Replay::Impl::perform(const RecordView& head) {
     return false;
 }
 
-void Replay::Impl::compare(std::size_t first, std::size_t last) {
-    std::size_t at = first;
+void Replay::Impl::compare(std::span<const RecordView> records) {
+    std::size_t at = 0;
     const auto differ = [&](const RecordView* recorded, const RecordView* replayed) {
         if (!difference) difference = difference_between(recorded, replayed);
     };
-    for (std::size_t i = first; i < last; ++i) then.take(recording.record(i));
+    for (const auto& record : records) then.take(record);
     again.drain([&](const RecordView& replayed) {
         now_made.take(replayed);
-        if (at >= last) return differ(nullptr, &replayed);
-        const auto recorded = recording.record(at++);
+        if (at >= records.size()) return differ(nullptr, &replayed);
+        const auto& recorded = records[at++];
         if (recorded.channel == replayed.channel && recorded.time == replayed.time && std::ranges::equal(recorded.bytes, replayed.bytes))
             return;
         differ(&recorded, &replayed);
     });
-    if (at < last) {
-        const auto recorded = recording.record(at);
-        differ(&recorded, nullptr);
-    }
+    if (at < records.size()) differ(&records[at], nullptr);
     if (!difference) return;
     // A set-point says more than the frame that carries it.
     if (auto named = difference_between(then, now_made, *machine)) difference = std::move(named);

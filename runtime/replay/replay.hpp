@@ -15,17 +15,19 @@
 #include <variant>
 #include <vector>
 
-#include "core/recording_file.hpp"
 #include "runtime/machine/machine.hpp"
+#include "runtime/recording_file/recording.hpp"
 #include "runtime/replay/difference.hpp"
 
 namespace taktwerk::runtime {
 
 class Replay {
 public:
+    using Made = std::variant<std::unique_ptr<Replay>, std::vector<Error>>;
     /// `recording` outlives the replay. Where the machine keeps something, it begins with what the recording has of it, in a folder of its own that
     /// goes with the replay.
-    static std::variant<std::unique_ptr<Replay>, std::vector<Error>> make(MachineConfig config, const Recording& recording);
+    static Made make(MachineConfig config, RecordSource& recording);
+    static Made make(MachineConfig config, const Recording& recording);
     ~Replay();
     Replay(const Replay&) = delete;
     Replay& operator=(const Replay&) = delete;
@@ -49,6 +51,7 @@ public:
 private:
     struct Impl;
     explicit Replay(std::unique_ptr<Impl> impl);
+    static Made make(MachineConfig config, RecordSource& recording, std::unique_ptr<RecordSource> owned);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -40,6 +42,12 @@ void RetainKeeper::restore(std::span<const RetainedItem> items, std::span<const 
                            std::span<double> parameters, std::span<const RetainBound> bounds) {
     values_.emplace(items, infos);
     notes_ = values_->restore(loaded_.kept, config_.start, parameters, bounds);
+    // Behind an alarm when nothing was left; where the other file is used this is all that is said of it.
+    for (const auto& damage : loaded_.damage)
+        notes_.push_back({RetainNote::What::damaged, damage.subject,
+                          fmt::format("{}: {}; {}", damage.subject, damage.what,
+                                      loaded_.lost ? "the other one is not usable either"
+                                                   : "the other one is used, which is one writing older at most")});
     values_lost_ = loaded_.lost && !(items.empty() && infos.empty());
     loaded_ = {};
     parameters_.assign(parameters.begin(), parameters.end());

@@ -22,8 +22,8 @@ std::vector<std::string> lines_of(std::span<const RetainNote> notes) {
         const auto count = std::count_if(notes.begin(), notes.end(), [what = what](const RetainNote& note) { return note.what == what; });
         if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, word);
     }
-    if (counts.empty()) return {};
-    std::vector<std::string> lines{"kept values: " + counts};
+    std::vector<std::string> lines;
+    if (!counts.empty()) lines.push_back("kept values: " + counts);
     for (const auto& note : notes)
         if (!note.text.empty()) lines.push_back(note.text);
     return lines;

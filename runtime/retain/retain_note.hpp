@@ -18,6 +18,7 @@ struct RetainNote {
         refused,     ///< what was kept does not fit: it begins with its first value
         configured,  ///< a parameter whose value in the machine file or program is another one since: that one holds
         cold,        ///< given up, since the start is cold or the origin
+        damaged,     ///< no name but a file that cannot be used
     };
     What what = What::kept;
     std::string name;

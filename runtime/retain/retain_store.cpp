@@ -1,6 +1,7 @@
 #include "runtime/retain/retain_store.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,14 +22,18 @@ RetainStore::Loaded RetainStore::load() {
     number_ = 0;
     next_ = 0;
     bool any = false;
-    for (unsigned s = 0; s < SlotFiles::count; ++s) any = any || SlotFiles::read(files_.place(s)).has_value();
+    std::array<Result<std::optional<std::string>>, SlotFiles::count> texts{SlotFiles::read(files_.place(0)),
+                                                                           SlotFiles::read(files_.place(1))};
+    for (const auto& text : texts) any = any || !text || text->has_value();
     for (unsigned s = 0; s < SlotFiles::count; ++s) {
         const auto path = any ? files_.place(s) : old_place(directory(), s);
-        const auto text = SlotFiles::read(path);
+        const auto text = any ? std::move(texts[s]) : SlotFiles::read(path);
         on_disk_[s].clear();
-        old_[s] = !any && text.has_value();
-        if (!text) continue;
-        auto kept = kept_of(*text);
+        old_[s] = !any && text && text->has_value();
+        unread_[s] = any && !text;
+        if (!text) loaded.damage.push_back(text.error());
+        if (!text || !text->has_value()) continue;
+        auto kept = kept_of(**text);
         if (!kept) {
             loaded.damage.push_back({"retain.damaged", path.string(), "the file is torn or altered",
                                      "nothing: the other slot is used where it is whole; home the axes that are not homed"});
@@ -73,7 +78,14 @@ bool RetainStore::contradicts(unsigned slot, std::span<const RetainedAxis> axes)
 
 Result<void> RetainStore::write_next(Kept& kept) {
     kept.number = number_ + 1;
-    if (auto done = files_.write(next_, text_of(kept)); !done) return done;
+    const auto text = text_of(kept);
+    if (!kept_of(text))
+        return Error{
+            "retain.not_readable", directory().string(),
+            fmt::format("it could not be read again: more than {} values, blocks or parameters, or two of one name", most_kept_items),
+            "nothing was changed: keep less"};
+    if (std::exchange(unread_[next_], false)) SlotFiles::set_aside(files_.place(next_));
+    if (auto done = files_.write(next_, text); !done) return done;
     on_disk_[next_] = kept.axes;
     // Nobody but an older runtime reads its files from here on.
     for (unsigned s = 0; s < SlotFiles::count; ++s) {

@@ -28,13 +28,14 @@ public:
 
     struct Loaded {
         Kept kept;
-        std::vector<Error> damage;  ///< one for each slot that cannot be used
+        std::vector<Error> damage;  ///< one for each slot that cannot be used: retain.damaged, retain.unreadable
         bool lost = false;          ///< there was something, and none of it can be used
     };
     /// Before the first save. An empty or missing directory is an empty, healthy store.
     [[nodiscard]] Loaded load();
     /// Errors, with the reason of the system: retain.cannot_write; retain.outdated where a slot moreover names a reference of an axis that
-    /// holds no more and cannot be taken back either. A slot that says nothing wrong stays.
+    /// holds no more and cannot be taken back either; retain.not_readable, before anything is touched: it is more than a file may hold. A slot that
+    /// says nothing wrong stays, and one that could not be read is kept beside its place (SlotFiles::set_aside).
     [[nodiscard]] Result<void> save(Kept kept);
 
     [[nodiscard]] const std::filesystem::path& directory() const noexcept { return files_.directory(); }
@@ -47,6 +48,7 @@ private:
     SlotFiles files_;
     std::array<std::vector<RetainedAxis>, SlotFiles::count> on_disk_;  // per slot, as a load() would find it
     std::array<bool, SlotFiles::count> old_{};                         // it stands in a file of an older runtime
+    std::array<bool, SlotFiles::count> unread_{};                      // something is there, whatever it says
     std::uint64_t number_ = 0;
     unsigned next_ = 0;  // slot
 };

@@ -2,12 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -56,11 +57,21 @@ fs::path SlotFiles::place(unsigned slot) const { return directory_ / fmt::format
 
 std::optional<Error> SlotFiles::lock() {
     std::error_code failed;
-    fs::create_directories(directory_, failed);
+    // That there is such a folder has to be on the disk as well.
+    if (fs::create_directories(directory_, failed) && directory_.has_parent_path())
+        (void)Descriptor(directory_.parent_path(), O_RDONLY | O_DIRECTORY).sync();
     const auto path = directory_ / "retain.lock";
     // For the owner alone: whoever can open it could hold it.
     const int lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (lock < 0) return std::nullopt;
+    if (lock < 0) {
+        const int why = errno;
+        const bool its_fault = why == EACCES || why == EPERM || why == ELOOP || why == EISDIR;  // and not the folder's or the disk's
+        if (!its_fault || ::faccessat(AT_FDCWD, directory_.c_str(), W_OK | X_OK, AT_EACCESS) != 0) return std::nullopt;
+        return Error{
+            "retain.lock", path.string(),
+            fmt::format("nobody can say whether another process keeps its values there: {}", std::strerror(why)),
+            fmt::format("give it to the user that the machine runs as (chown), or delete it once nothing uses {}", directory_.string())};
+    }
     if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
         char pid[32] = {};
         const auto length = ::pread(lock, pid, sizeof pid - 1, 0);
@@ -77,16 +88,33 @@ std::optional<Error> SlotFiles::lock() {
     return std::nullopt;
 }
 
-std::optional<std::string> SlotFiles::read(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) return std::nullopt;
-    const auto size = static_cast<std::streamoff>(file.tellg());
-    std::string text(size > 0 ? std::min(static_cast<std::size_t>(size), largest) : 0, '\0');
-    file.seekg(0);
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-    return text;
+Result<std::optional<std::string>> SlotFiles::read(const fs::path& path) {
+    const auto unreadable = [&](const std::string& why) {
+        return Error{"retain.unreadable", path.string(), "it is there and cannot be read: " + why,
+                     "let the user that the machine runs as read it, or look at that disk"};
+    };
+    // Not waiting: whatever has that name, a machine starts.
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (fd < 0 && (errno == ENOENT || errno == ENOTDIR)) return std::optional<std::string>{};
+    if (fd < 0) return unreadable(std::strerror(errno));
+    struct stat info {};
+    std::string text;
+    int failed = ::fstat(fd, &info) != 0 ? errno : 0;
+    const bool is_file = S_ISREG(info.st_mode);
+    std::array<char, 65536> part;
+    while (is_file && failed == 0 && text.size() < largest) {
+        const auto got = ::read(fd, part.data(), std::min(part.size(), largest - text.size()));
+        if (got < 0 && errno != EINTR) failed = errno;
+        if (got == 0) break;
+        if (got > 0) text.append(part.data(), static_cast<std::size_t>(got));
+    }
+    ::close(fd);
+    if (failed != 0) return unreadable(std::strerror(failed));
+    if (!is_file) return unreadable("it is no file");
+    return std::optional(std::move(text));
 }
+
+void SlotFiles::set_aside(const fs::path& file) noexcept { (void)::rename(file.c_str(), (file.string() + ".unread").c_str()); }
 
 Result<void> SlotFiles::write(unsigned slot, std::string_view text) {
     std::error_code failed;
@@ -95,7 +123,7 @@ Result<void> SlotFiles::write(unsigned slot, std::string_view text) {
     const auto path = place(slot);
     const auto beside = fs::path(path.string() + ".new");
     {
-        const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC);
+        const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
         if (!file.write(text) || !file.sync()) return cannot_write(beside, std::strerror(errno));
     }
     fs::rename(beside, path, failed);

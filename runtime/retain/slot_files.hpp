@@ -24,11 +24,14 @@ public:
     SlotFiles& operator=(const SlotFiles&) = delete;
 
     /// Makes the folder and keeps everybody else out of it for as long as this lives. Nothing where it cannot be written: write() says
-    /// that. Errors: retain.in_use, with the process that has it.
+    /// that. Errors: retain.in_use, with the process that has it; retain.lock: the folder could be written, and its lock is somebody else's, so
+    /// that nobody could say whether it is in use.
     [[nodiscard]] std::optional<Error> lock();
     [[nodiscard]] std::filesystem::path place(unsigned slot) const;
-    /// Nothing where there is no such file.
-    [[nodiscard]] static std::optional<std::string> read(const std::filesystem::path& file);
+    /// Nothing where there is no such file. Errors: retain.unreadable, with the reason of the system: something is there, whatever it says.
+    [[nodiscard]] static Result<std::optional<std::string>> read(const std::filesystem::path& file);
+    /// Keeps a file that cannot be read, as NAME.unread, so that the next write() does not replace it. Nothing where it cannot be moved either.
+    static void set_aside(const std::filesystem::path& file) noexcept;
     /// Errors: retain.cannot_write, with the reason of the system; the other slot is as it was, and this one is the old or the new one.
     [[nodiscard]] Result<void> write(unsigned slot, std::string_view text);
     /// Removes a file, or empties it where the folder lets nothing go. False: neither was possible, and it says what it said.

@@ -19,11 +19,13 @@ constexpr Duration watch_period = std::chrono::milliseconds{20};
 
 }  // namespace
 
-RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machine), world_(world), end_watch_(machine) {
+RealtimeRunner::RealtimeRunner(Machine& machine, World* world)
+    : machine_(machine), world_(world), end_watch_(machine), tasks_(machine, clock_) {
     const auto& wanted = machine.config().realtime;
     request_.priority = wanted.priority > 0 ? std::optional<int>{wanted.priority} : std::nullopt;
     request_.cpus = wanted.cpus;
     request_.lock_memory = wanted.lock_memory;
+    machine.tell_measured_times();
 }
 
 RealtimeRunner::~RealtimeRunner() { finish(); }
@@ -47,16 +49,6 @@ void RealtimeRunner::cycle_thread() {
     counters_ = loop.counters();
 }
 
-void RealtimeRunner::task_thread(std::size_t index) {
-    const CrashStack crash_stack;
-    math::set_stepping_thread_float_environment();
-    // The cycle never wakes anybody (that would be a system call): a task looks for its release itself, often enough.
-    const Duration look = machine_.config().cycle / 4;
-    while (!stop_.load(std::memory_order_acquire)) {
-        if (!machine_.run_slow_task(index)) clock_.sleep_until(clock_.now() + look);
-    }
-}
-
 // Work that may wait. The last round comes after the cycle has ended: a program's stop(), the places where the axes came to rest.
 void RealtimeRunner::beside(const std::function<void(Instant)>& work) {
     const CrashStack crash_stack;
@@ -76,8 +68,11 @@ void RealtimeRunner::modbus_thread(std::size_t device) {
 }
 
 void RealtimeRunner::watch_thread() {
+    // Above the tasks: it has to get a processor while one of them computes without an end. Refused: so were theirs.
+    if (request_.priority && *request_.priority > 1) (void)set_fifo_priority(*request_.priority - 1);
     bool was_stuck = false, given_up = false;
     while (!all_home_.load(std::memory_order_acquire)) {
+        tasks_.look(clock_.now());
         const auto hopeless = end_watch_.look(clock_.now());
         const auto& stuck = end_watch_.stuck();
         if (stuck.has_value() != was_stuck && on_stuck) on_stuck(stuck ? &*stuck : nullptr);
@@ -95,12 +90,13 @@ Result<RealtimeReport> RealtimeRunner::start() {
     cycle_ = std::thread{[this] { cycle_thread(); }};
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
     whole.items.insert(whole.items.end(), report_.items.begin(), report_.items.end());
+    const auto tasks = tasks_.start(stop_);
+    whole.items.insert(whole.items.end(), tasks.items.begin(), tasks.items.end());
     if (machine_.config().realtime.required && !whole.all_granted()) {
         finish();
         return Error{"realtime.refused", "realtime", "the configuration requires real time, and the system refuses it:\n" + whole.text(),
                      "give the process CAP_SYS_NICE and CAP_IPC_LOCK, or set `realtime.required: false`"};
     }
-    for (std::size_t i = 0; i < machine_.slow_task_count(); ++i) tasks_.emplace_back([this, i] { task_thread(i); });
     beside_.emplace_back([this] { beside([this](Instant) { machine_.service_programs(); }); });
     beside_.emplace_back([this] { beside([this](Instant now) { machine_.service_disk(now); }); });
     for (std::size_t i = 0; i < machine_.modbus_count(); ++i) beside_.emplace_back([this, i] { modbus_thread(i); });
@@ -174,11 +170,10 @@ void RealtimeRunner::finish() {
     end_watch_.only_threads_left();
     if (cycle_.joinable()) cycle_.join();
     cycle_running_.store(false, std::memory_order_release);
-    for (auto* threads : {&tasks_, &beside_}) {
-        for (auto& thread : *threads)
-            if (thread.joinable()) thread.join();
-        threads->clear();
-    }
+    tasks_.join();
+    for (auto& thread : beside_)
+        if (thread.joinable()) thread.join();
+    beside_.clear();
     all_home_.store(true, std::memory_order_release);
     if (watch_.joinable()) watch_.join();
 }

@@ -2,12 +2,13 @@
 // A machine in real time. Each thread does one kind of work, so that what waits holds up only its own:
 //
 //   cycle      the machine's cycle
-//   tasks      one for each slower task
+//   tasks      one for each slower task, at priorities below the cycle's (task_threads.hpp)
 //   service    the caller's of serve(): bus scripts, drives' services, and what the caller does in keep_on; nothing there may wait
 //   programs   start() and stop() of programs: foreign code
 //   disk       positions, until they are on the disk
 //   modbus     one for each Modbus TCP device: connecting, asking, waiting for its answer
-//   watch      looks whether the cycle advances and whether an end that was asked for comes (end_watch.hpp)
+//   watch      looks whether the cycle advances, whether an end that was asked for comes (end_watch.hpp), whether a task computes without an end;
+//              its priority is right below the cycle's
 
 #include <atomic>
 #include <functional>
@@ -24,6 +25,7 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/run/end_watch.hpp"
 #include "runtime/run/in_step.hpp"
+#include "runtime/run/task_threads.hpp"
 #include "runtime/world/world.hpp"
 
 namespace taktwerk::runtime {
@@ -61,7 +63,6 @@ public:
 
 private:
     void cycle_thread();
-    void task_thread(std::size_t index);
     void modbus_thread(std::size_t device);
     void beside(const std::function<void(Instant)>& work);
     void watch_thread();
@@ -81,7 +82,8 @@ private:
     EndWatch end_watch_;
     std::atomic<bool> stop_{false}, ready_{false}, cycle_running_{false}, all_home_{false};
     std::thread cycle_, watch_;
-    std::vector<std::thread> tasks_, beside_;
+    TaskThreads tasks_;
+    std::vector<std::thread> beside_;
     Instant next_service_{};
     std::unique_ptr<InStep> in_step_;  // of a run that is recorded
 };

@@ -1,7 +1,5 @@
 #include "runtime/scope_file/scope_file.hpp"
 
-#include <zstd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -14,6 +12,7 @@
 
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
+#include "runtime/compression/compression.hpp"
 
 namespace taktwerk::runtime {
 
@@ -22,7 +21,6 @@ namespace {
 constexpr std::array<std::byte, 8> magic{std::byte{'T'}, std::byte{'W'}, std::byte{'S'}, std::byte{'C'},
                                          std::byte{'O'}, std::byte{'P'}, std::byte{'E'}, std::byte{0}};
 constexpr std::size_t head_at = magic.size() + 8, block_head = 12, end_bytes = 8;
-constexpr int level = 3;
 
 Error damaged(const std::string& subject, std::string what) {
     return {"recording.damaged", subject, std::move(what), "Take another recording; this file was changed or cut off."};
@@ -153,19 +151,11 @@ Result<void> ScopeFileWriter::put(std::span<const std::byte> bytes) {
 Result<void> ScopeFileWriter::write(std::span<const std::uint64_t> columns) {
     const auto rows = columns.size() / words_;
     split_planes(columns, words_, planes_);
-    packed_.resize(block_head + ZSTD_compressBound(planes_.size()));
-    const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> packer{ZSTD_createCCtx(), &ZSTD_freeCCtx};
-    const auto refused = [&](std::size_t code) {
-        return Error{"recording.write", path_, fmt::format("zstd: {}", ZSTD_getErrorName(code)), "report this"};
-    };
-    if (const auto code = ZSTD_CCtx_setParameter(packer.get(), ZSTD_c_compressionLevel, level); ZSTD_isError(code) != 0)
-        return refused(code);
-    const auto length =
-        ZSTD_compress2(packer.get(), packed_.data() + block_head, packed_.size() - block_head, planes_.data(), planes_.size());
-    if (ZSTD_isError(length) != 0) return refused(length);
+    packed_.assign(block_head, std::byte{0});
+    compress(planes_, packed_);
     store_le<std::uint32_t>(packed_, 0, static_cast<std::uint32_t>(rows));
-    store_le<std::uint32_t>(packed_, 4, static_cast<std::uint32_t>(length));
-    const auto block = std::span{packed_}.first(block_head + length);
+    store_le<std::uint32_t>(packed_, 4, static_cast<std::uint32_t>(packed_.size() - block_head));
+    const std::span<const std::byte> block{packed_};
     store_le<std::uint32_t>(packed_, 8, block_sum(block));
     rows_ += rows;
     return put(block);
@@ -197,15 +187,13 @@ Result<KeptRows> parse_scope_file(std::span<const std::byte> bytes, const std::s
                      "Keep fewer seconds: `recording: {before: ..., after: ...}`."};
     // What a block says it holds is known before anything of its size is allocated.
     for (const auto& block : *blocks)
-        if (ZSTD_getFrameContentSize(block.packed.data(), block.packed.size()) != block.rows * words * 8)
-            return damaged(subject, "a block is not as long as its rows");
+        if (size_before_compression(block.packed) != block.rows * words * 8) return damaged(subject, "a block is not as long as its rows");
     std::vector<std::uint64_t> columns(all * words);
     std::vector<std::byte> planes;
     std::size_t at = 0;
     for (const auto& block : *blocks) {
         planes.resize(block.rows * words * 8);
-        if (ZSTD_decompress(planes.data(), planes.size(), block.packed.data(), block.packed.size()) != planes.size())
-            return damaged(subject, fmt::format("the block behind {} rows is damaged", at));
+        if (!decompress(block.packed, planes)) return damaged(subject, fmt::format("the block behind {} rows is damaged", at));
         join_planes(planes, words, block.rows, columns, all, at);
         at += block.rows;
     }

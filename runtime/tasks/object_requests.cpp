@@ -54,7 +54,7 @@ public:
     [[nodiscard]] ObjectOutcome why(DeviceRef device, std::size_t size) const noexcept override {
         if (device.index >= devices_) return ObjectOutcome::invalid_device;
         if (size > object_data_limit) return ObjectOutcome::too_long;
-        return held() < places_per_program ? ObjectOutcome::pending : ObjectOutcome::no_place;
+        return held() < places_per_program && !closed_.load(std::memory_order_relaxed) ? ObjectOutcome::pending : ObjectOutcome::no_place;
     }
     [[nodiscard]] ObjectAnswer answer(ObjectTicket ticket) const noexcept override {
         ObjectAnswer result;
@@ -74,9 +74,11 @@ public:
     }
 
     // --- for the owner ------------------------------------------------------------------------------------------------------
-    void release_all() noexcept {
+    void open() noexcept {
         for (Place& place : places_) free(place);
+        closed_.store(false, std::memory_order_relaxed);
     }
+    void close() noexcept { closed_.store(true, std::memory_order_relaxed); }
     template <class Visit>
     void each(Visit visit) {
         for (std::size_t i = 0; i < places_.size(); ++i) visit(i, places_[i]);
@@ -95,7 +97,7 @@ private:
     }
 
     ObjectTicket ask(DeviceRef device, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data, bool write) noexcept {
-        if (device.index >= devices_ || held() >= places_per_program) return {};
+        if (device.index >= devices_ || held() >= places_per_program || closed_.load(std::memory_order_relaxed)) return {};
         for (std::size_t i = 0; i < places_.size(); ++i) {
             Place& place = places_[i];
             if (!place.move(State::free, State::filling)) continue;
@@ -128,6 +130,7 @@ private:
     }
 
     std::size_t devices_;
+    std::atomic<bool> closed_{false};
     std::array<Place, places_per_program + at_work> places_{};  // what is abandoned takes no place from the program
 };
 
@@ -138,7 +141,8 @@ ObjectRequests::~ObjectRequests() = default;
 
 ObjectAccess& ObjectRequests::of(std::size_t program) noexcept { return *programs_[program]; }
 
-void ObjectRequests::release_all(std::size_t program) noexcept { programs_[program]->release_all(); }
+void ObjectRequests::open(std::size_t program) noexcept { programs_[program]->open(); }
+void ObjectRequests::close(std::size_t program) noexcept { programs_[program]->close(); }
 
 void ObjectRequests::take_answers(Recorder* recorder, Instant now) noexcept {
     using State = OfProgram::State;

@@ -36,7 +36,9 @@ public:
     /// Cycle: answers that have arrived become visible, and go to the recorder where there is one. Real-time safe.
     void take_answers(Recorder* recorder, Instant now) noexcept;
     /// Cycle: the program is about to start, and none of its tasks runs. Real-time safe.
-    void release_all(std::size_t program) noexcept;
+    void open(std::size_t program) noexcept;
+    /// Cycle: one of its tasks may go on without an end, and shall ask nobody for anything any more. Until open(). Real-time safe.
+    void close(std::size_t program) noexcept;
     /// Service side: starts what was asked for, fetches what was answered.
     void step(ecat::Master& bus);
 

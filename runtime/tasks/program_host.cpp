@@ -12,6 +12,7 @@
 #include "axes/tables/cam_check.hpp"
 #include "core/nearest_name.hpp"
 #include "runtime/present_slaves.hpp"
+#include "runtime/retain/kept_names.hpp"
 #include "runtime/retain/kept_text.hpp"
 #include "runtime/retain/value_type.hpp"
 
@@ -153,6 +154,7 @@ public:
         find_retained_tasks();
         refuse_kept_buttons();
         refuse_too_much_kept();
+        refuse_names_kept_twice();
         const auto& program = config_.programs[program_];
         for (const auto& set : program.parameters) {
             bool known = false;
@@ -281,6 +283,11 @@ private:
                     fmt::format("the programs up to this one keep {} values in {} bytes, and a machine keeps at most {} in {}", values,
                                 bytes, most_kept_values, most_kept_bytes),
                     "keep less, or write large tables into a file of the program's own in stop()");
+    }
+    void refuse_names_kept_twice() {
+        if (const auto name = name_kept_twice(host_.retained_, host_.retained_.size() - retained_names_.size()))
+            problem("program.duplicate_name", fmt::format("'{}' is kept twice: a kept block has its pins as NAME.PIN", *name),
+                    "give each a name of its own");
     }
     /// Nobody holds a button after a restart.
     void refuse_kept_buttons() {

@@ -4,12 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <optional>
 
 #include "programs/api/program.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/tasks/fault_text.hpp"
 #include "runtime/tasks/program_groups.hpp"
 #include "runtime/tasks/program_requests.hpp"
+#include "runtime/tasks/task_watch.hpp"
 
 namespace taktwerk::runtime {
 
@@ -47,6 +49,24 @@ private:
     std::atomic<std::uint16_t> word_{0};
 };
 
+/// Which task has stopped its program by not keeping its time. Written by the cycle, read by any thread.
+class StoppedByTask {
+public:
+    void set(std::size_t task, TaskVerdict verdict) noexcept {
+        word_.store(static_cast<std::uint32_t>(task + 1) << 8 | static_cast<std::uint32_t>(verdict), std::memory_order_relaxed);
+    }
+    void clear() noexcept { word_.store(0, std::memory_order_relaxed); }
+    /// Its place among the machine's tasks; nothing: none has.
+    [[nodiscard]] std::optional<std::size_t> task() const noexcept {
+        const auto word = word_.load(std::memory_order_relaxed);
+        return word == 0 ? std::nullopt : std::optional<std::size_t>{(word >> 8) - 1};
+    }
+    [[nodiscard]] TaskVerdict verdict() const noexcept { return static_cast<TaskVerdict>(word_.load(std::memory_order_relaxed) & 0xFF); }
+
+private:
+    std::atomic<std::uint32_t> word_{0};
+};
+
 struct ProgramRecord {
     ProgramRecord(axes::AxisRequests& axes, axes::AxisGroups& of_axes, std::span<AxisClaims> claims, std::uint16_t program)
         : requests(axes, claims, program), groups(of_axes, claims, program) {}
@@ -61,6 +81,7 @@ struct ProgramRecord {
     std::atomic<Handshake> handshake{Handshake::none};
     HookAnswer hook;
     std::uint64_t start_after = 0;       ///< stop levels raised when its start was given; 0: it starts by itself
+    StoppedByTask stopped_by;            ///< with state fault, and until the next start
     FaultText fault;                     ///< the cycle's; handed over with stop_asked
     TaskContext::Undeclared undeclared;  ///< what it uses without having declared it; since its start
     ProgramRequests requests;

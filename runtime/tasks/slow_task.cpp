@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/stopwatch.hpp"
 #include "runtime/tasks/code_at_work.hpp"
 
 namespace taktwerk::runtime {
@@ -53,12 +52,15 @@ void SlowTask::release(const CycleContext& now, std::span<const axes::AxisView> 
     context_.period = now.period * static_cast<Duration::rep>(divisor_);
     context_.cycle = runs_++;
     alarms_ = alarms_at_release_ = program_alarms;
+    times_.since_release.restart();
     state_.store(State::released, std::memory_order_release);
 }
 
 bool SlowTask::run_if_released() noexcept {
     auto expected = State::released;
     if (!state_.compare_exchange_strong(expected, State::running, std::memory_order_acquire)) return false;
+    times_.lateness = times_.since_release.lap();
+    times_.released = context_.now;
     const Stopwatch watch;
     TaskContext context;
     static_cast<CycleContext&>(context) = context_;
@@ -74,6 +76,7 @@ bool SlowTask::run_if_released() noexcept {
     context.parameters = parameters_;
     context.alarms = alarms_;
     context.first_scan = context_.cycle == 0;
+    context.task_info = &times_.told;
     for (std::size_t i = 0; i < given_.count; ++i)
         ProgramHost::write(given_.writes[i].type, given_.writes[i].address, given_.writes[i].value);
     given_.count = 0;
@@ -88,9 +91,10 @@ bool SlowTask::run_if_released() noexcept {
     }
     alarms_ = context.alarms;
     undeclared_ = context.undeclared;
+    times_.asked = context.task_asked;
     left_.variables.read();
     left_.kept.read();
-    run_time_ = Stopwatch{watch}.lap();
+    times_.run = Stopwatch{watch}.lap();
     state_.store(State::done, std::memory_order_release);
     return true;
 }

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/cycle_context.hpp"
+#include "core/stopwatch.hpp"
+#include "runtime/recording/task_times_record.hpp"
 #include "runtime/tasks/fault_text.hpp"
 #include "runtime/tasks/latched_requests.hpp"
 #include "runtime/tasks/memory_copy.hpp"
@@ -60,6 +62,13 @@ public:
     /// Room for what the next run is to find in its operator values; then how much of it is filled. Before release().
     [[nodiscard]] std::span<Write> writes() noexcept { return given_.writes; }
     void set_write_count(std::size_t count) noexcept { given_.count = count; }
+    /// What the next run is told of its task. Before release().
+    void tell(const TaskInfo& info) noexcept { times_.told = info; }
+    /// For a replay: released, not yet run.
+    void tell_again(const TaskTimesRecord& then) noexcept { then.tell(times_.told); }
+    /// Only while finished(): the last run has asked what it was told.
+    [[nodiscard]] bool times_asked() const noexcept { return times_.asked; }
+    [[nodiscard]] const TaskInfo& info() const noexcept { return times_.told; }
     /// Latches everything and hands the task to its thread.
     void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
@@ -76,7 +85,9 @@ public:
     }
     /// How many runs have been applied.
     [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
-    [[nodiscard]] Duration last_run() const noexcept { return run_time_; }
+    [[nodiscard]] Duration last_run() const noexcept { return times_.run; }
+    /// From its release to its first instruction.
+    [[nodiscard]] Duration last_lateness() const noexcept { return times_.lateness; }
     /// Only while finished().
     [[nodiscard]] bool threw() const noexcept { return threw_; }
     [[nodiscard]] const FaultText& fault() const noexcept { return fault_; }
@@ -91,6 +102,8 @@ public:
     // --- task thread, or between cycles in virtual time -----------------------------------------------------------------------
     /// True when there was something to do.
     bool run_if_released() noexcept;
+    /// Scan time of the cycle that released the last run.
+    [[nodiscard]] Instant last_release() const noexcept { return times_.released; }
 
 private:
     ProgramHost::Task task_;
@@ -123,7 +136,13 @@ private:
     bool threw_ = false;
     FaultText fault_;
     TaskContext::Undeclared undeclared_;
-    Duration run_time_{};
+    struct {
+        TaskInfo told;  // to the run
+        bool asked = false;
+        Stopwatch since_release;
+        Duration run{}, lateness{};
+        Instant released{};
+    } times_;
 };
 
 }  // namespace taktwerk::runtime

@@ -281,9 +281,21 @@ TEST_F(Stopping, AnEndlessLoopInABaseTaskIsNamedToEveryClientAndEndsInThePromise
 TEST_F(Stopping, AnEndlessSlowerTaskDoesNotOutliveTheEnd) {
     Child run({taktwerk, "run", dying(2, 4)});
     ASSERT_TRUE(run.says("not finished at its next release", 60s)) << run.text();
+    EXPECT_TRUE(run.says("-> Disabled", 30s)) << "its axis stops, and its power goes: " << run.text();
+    const auto state = ask({{"cmd", "state"}});
+    ASSERT_TRUE(state) << "the machine lives: " << refused.text();
+    EXPECT_THAT(state->dump(), HasSubstr("task_late"));
+    EXPECT_TRUE(ask({{"cmd", "reset"}})) << refused.text();
+    EXPECT_FALSE(ask({{"cmd", "program_start"}, {"program", "dying"}}));
+    EXPECT_THAT(refused.what, HasSubstr("has not come back")) << refused.text();
     run.signal(SIGTERM);
     EXPECT_EQ(run.wait(40s), exit_hung) << run.text();
     EXPECT_THAT(run.text(), HasSubstr("task 'main' of program 'dying' does not return"));
+
+    Child again({taktwerk, "run", dying(0, 4)});
+    EXPECT_TRUE(again.says("-> Standstill", 60s)) << "the next run gets the bus and the axis: " << again.text();
+    again.signal(SIGTERM);
+    EXPECT_EQ(again.wait(40s), exit_ok) << again.text();
 }
 
 struct Crash {

@@ -137,19 +137,23 @@ TEST(OwnedIncludes, LibrariesStayWhereTheyAreWrapped) {
                     {"runtime/bundle/trust.cpp", "#include <sodium.h>\n"},
                     {"runtime/retain/kept_text.cpp", "#include <nlohmann/json.hpp>\n"},
                     {"hmi_bridge/socket/json_history.cpp", "#include <sqlite3.h>\n"},
+                    {"runtime/scope_file/scope_file.cpp", "#include <zstd.h>\n"},
                     {"core/ring.hpp", "#include <gtest/gtest_prod.h>\n"},
+                    {"fb_library/groups/move_linear.hpp", "#include <Eigen/Core>\n"},
                 }),
                 ElementsAre(HasSubstr("LCM"), HasSubstr("yaml-cpp"), HasSubstr("pugixml"), HasSubstr("libmodbus"), HasSubstr("Boost"),
                             HasSubstr("Boost"), HasSubstr("Boost"), HasSubstr("libsodium"), HasSubstr("libsodium"),
-                            HasSubstr("nlohmann-json"), HasSubstr("SQLite"), HasSubstr("a test library")));
+                             HasSubstr("nlohmann-json"), HasSubstr("SQLite"), HasSubstr("zstd"), HasSubstr("a test library"), HasSubstr("Eigen")));
     EXPECT_NO_VIOLATIONS(check_owned_includes({
         {"hmi_bridge/lcm/publisher.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
         {"hmi_bridge/history/history_store.cpp", "#include <sqlite3.h>\n"},
         {"runtime/signature/sha256.cpp", "#include <sodium.h>\n"},
+        {"runtime/compression/compression.cpp", "#include <zstd.h>\n"},
         {"runtime/bundle/manifest.cpp", "#include <nlohmann/json.hpp>\n"},
         {"config/load.cpp", "#include <yaml-cpp/yaml.h>\n"},
         {"ecat/esi/read.cpp", "#include <pugixml.hpp>\n"},
         {"modbus/tcp/tcp_exchange.cpp", "#include <modbus/modbus.h>\n"},
+        {"axes/kinematics/chain.hpp", "#include <Eigen/Core>\n"},
         {"hmi_bridge/web/server/feed.hpp", "#include <boost/asio.hpp>\n"},
         {"apps/hmi/hmi.cpp", "#include \"hmi_bridge/web/server/web_server.hpp\"\n"},
     }));

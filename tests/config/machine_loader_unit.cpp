@@ -413,7 +413,13 @@ TEST(MachineLoader, TasksRunAtWholeCycles) {
     EXPECT_EQ(loaded.machine.tasks[0].divisor, 1);
     EXPECT_EQ(loaded.machine.tasks[1].divisor, 4);  // 8 ms at 2 ms
     EXPECT_EQ(loaded.machine.tasks[1].overrun, runtime::OverrunReaction::count);
+    EXPECT_FALSE(loaded.machine.tasks[1].watchdog);
+    EXPECT_FALSE(loaded.machine.tasks[1].priority);
     EXPECT_EQ(loaded.machine.tasks[2].divisor, 250);
+    EXPECT_EQ(loaded.machine.tasks[2].overrun, runtime::OverrunReaction::stop_program);
+    EXPECT_EQ(loaded.machine.tasks[2].watchdog, 400ms);
+    EXPECT_EQ(loaded.machine.tasks[2].watchdog_sensitivity, 2);
+    EXPECT_EQ(loaded.machine.tasks[2].priority, 30);
     EXPECT_EQ(loaded.machine.tasks[3].name, "main") << "a program without `tasks` has one";
     EXPECT_EQ(loaded.machine.tasks[3].program, "other");
     const auto& parameters = loaded.machine.programs[0].parameters;

@@ -1,17 +1,20 @@
-// Any bytes as a recording: an error that names a place, or records that lie inside the file. Where the first byte is odd, the rest is
-// the head and the records of a file whose lengths and check sums are put right, for chance would not find those. Each record is then read as
-// what its channel makes it in a recording of a machine: what can be read is written again as the same bytes, and a file that the machine began
-// with has a name that leads nowhere else.
+// Any bytes as a recording: an error that names a place, or records of channels that there are. Where the first byte is odd, the rest is the head
+// and the records of a file whose lengths and check sums are put right, for chance would not find those; where its second bit is set as well, the
+// rest is the inside of a block, before it is compressed. Each record is then read as what its channel makes it in a recording of a machine: what
+// can be read is written again as the same bytes, and a file that the machine began with has a name that leads nowhere else.
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <vector>
 
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
-#include "core/recording_file.hpp"
+#include "runtime/compression/compression.hpp"
 #include "runtime/recording/inbox_reader.hpp"
+#include "runtime/recording_file/recording_file.hpp"
 
 using namespace taktwerk;
+using namespace taktwerk::runtime;
 
 namespace {
 
@@ -23,8 +26,17 @@ void append(Bytes& to, T value) {
     store_le<T>(std::span{to}, to.size() - sizeof(T), value);
 }
 
-/// [head's length u8][head], then records as [length u8][channel u8][time i64][bytes].
-Bytes built(std::span<const std::byte> in) {
+void append_block(Bytes& file, std::span<const std::byte> bytes, std::uint32_t records) {
+    Bytes head;
+    append<std::uint32_t>(head, static_cast<std::uint32_t>(bytes.size()));
+    append<std::uint32_t>(head, records);
+    file.insert(file.end(), head.begin(), head.end());
+    append<std::uint32_t>(file, crc32(bytes, crc32(head)));
+    file.insert(file.end(), bytes.begin(), bytes.end());
+}
+
+/// [head's length u8][head], then records as [length u8][channel u8][time i64][bytes]; or [head's length u8][head][number of records u16][a block].
+Bytes built(std::span<const std::byte> in, bool inside_of_a_block) {
     const auto take = [&in](std::size_t most) {
         const auto part = in.first(std::min(most, in.size()));
         in = in.subspan(part.size());
@@ -41,23 +53,24 @@ Bytes built(std::span<const std::byte> in) {
     append<std::uint32_t>(file, static_cast<std::uint32_t>(head.size()));
     append<std::uint32_t>(file, crc32(head));
     file.insert(file.end(), head.begin(), head.end());
+    if (inside_of_a_block) {
+        const auto records = static_cast<std::uint32_t>(number() | number() << 8);
+        Bytes packed;
+        compress(in, packed);
+        append_block(file, packed, records);
+        return file;
+    }
+    RecordPacker packer{tick_channel};
     while (!in.empty()) {
-        const auto length = number();
-        Bytes record;
-        const auto channel = number();
-        append<std::uint16_t>(record, static_cast<std::uint16_t>(channel == 0xFF ? 0xFFFF : channel));
-        append<std::uint16_t>(record, 0);
+        const auto length = number(), channel = number();
         Bytes time(8);
         std::ranges::copy(take(8), time.begin());
-        record.insert(record.end(), time.begin(), time.end());
-        const auto bytes = take(length);
-        Bytes summed;
-        append<std::uint32_t>(summed, static_cast<std::uint32_t>(bytes.size()));
-        summed.insert(summed.end(), record.begin(), record.end());
-        file.insert(file.end(), summed.begin(), summed.end());
-        append<std::uint32_t>(file, crc32(bytes, crc32(summed)));
-        file.insert(file.end(), bytes.begin(), bytes.end());
+        packer.add({static_cast<RecordChannel>(channel), Instant{Duration{load_le<std::int64_t>(std::span<const std::byte>{time})}},
+                    take(length)});
     }
+    if (const auto records = packer.records(); records > 0) append_block(file, packer.take(), static_cast<std::uint32_t>(records));
+    const std::array<std::byte, 9> end{};
+    append_block(file, end, 0);
     return file;
 }
 
@@ -76,7 +89,6 @@ void same_again(std::span<const std::byte> bytes, const std::optional<T>& value,
 }
 
 void read_as_inbox(std::span<const std::byte> bytes) {
-    using namespace runtime;
     const Instant at{};
     same_again(bytes, read_tick(bytes), [](Recorder& r, const CycleTick& v) { record_tick(r, v); });
     same_again(bytes, read_command(bytes), [&](Recorder& r, const OperatorCommand& v) { record_command(r, at, v); });
@@ -90,6 +102,7 @@ void read_as_inbox(std::span<const std::byte> bytes) {
     same_again(bytes, read_wire(bytes), [](Recorder& r, const WireRecord& v) { record_wire(r, v.mac, v.ring); });
     same_again(bytes, read_hook(bytes), [&](Recorder& r, const HookRecord& v) { record_hook(r, at, v.program, v.stop); });
     same_again(bytes, read_slow(bytes), [&](Recorder& r, const SlowRecord& v) { record_slow(r, at, v.task); });
+    same_again(bytes, read_task_times(bytes), [&](Recorder& r, const TaskTimesRecord& v) { record_task_times(r, at, v); });
     (void)read_hash(bytes);
     (void)read_link(bytes);
     (void)read_ring(bytes);
@@ -103,25 +116,22 @@ void read_as_inbox(std::span<const std::byte> bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
     const std::span<const std::byte> in{reinterpret_cast<const std::byte*>(data) + 1, size - 1};
-    const bool whole = (data[0] & 1) != 0;
-    auto file = whole ? built(in) : Bytes(in.begin(), in.end());
+    auto file = (data[0] & 1) != 0 ? built(in, (data[0] & 2) != 0) : Bytes(in.begin(), in.end());
     const auto length = file.size();
-    const auto read = parse_recording(std::move(file), "fuzz.twrec");
-    if (!read) {
-        if (read.error().code.empty() || read.error().what.empty()) std::abort();
-        return 0;
+    const auto reader = RecordingReader::of(std::move(file), "fuzz.twrec");
+    const auto check = [](const Error& error) {
+        if (error.code.empty() || error.what.empty()) std::abort();
+    };
+    if (!reader) return check(reader.error()), 0;
+    if ((*reader)->bytes() != length) std::abort();
+    for (std::uint64_t records = 0;; ++records) {
+        const auto record = (*reader)->next();
+        if (!record) return check(record.error()), 0;
+        if (!record->has_value()) {
+            if (records != (*reader)->records()) std::abort();
+            return 0;
+        }
+        if ((*record)->channel >= (*reader)->info().channels.size()) std::abort();
+        read_as_inbox((*record)->bytes);
     }
-    if (read->bytes.size() != length) std::abort();
-    std::size_t carried = 0;
-    for (std::size_t i = 0; i < read->size(); ++i) {
-        const auto record = read->record(i);
-        if (record.channel >= read->info.channels.size()) std::abort();
-        if (!record.bytes.empty() &&
-            (record.bytes.data() < read->bytes.data() || record.bytes.data() + record.bytes.size() > read->bytes.data() + length))
-            std::abort();
-        carried += record.bytes.size();
-        read_as_inbox(record.bytes);
-    }
-    if (carried > length) std::abort();
-    return 0;
 }

@@ -18,17 +18,17 @@ namespace taktwerk::runtime::testing {
 class RecordedInMemory {
 public:
     /// Before the machine's first cycle. `runner`: takes away after each cycle; nullptr: the caller does, by drain().
-    void watch(Machine& machine, VirtualRunner* runner, Instant start) {
+    void watch(Machine& machine, VirtualRunner* runner, Instant start, RecordedThreads threads = RecordedThreads::one) {
         config_ = machine.config();
         recording_ = {};
         full_ = false;
-        recording_.info = recording_info(config_, start, RecordedThreads::one);
+        recording_.info = recording_info(config_, start, threads);
         for (const auto& file : start_files(config_)) {
             const auto record = start_file_record(file);
             keep({start_file_channel, start, record});
         }
         recorder_.emplace(std::size_t{16} << 20, Recorder::Policy::drop_newest);
-        machine.record(*recorder_, RecordedThreads::one);
+        machine.record(*recorder_, threads);
         if (runner != nullptr) runner->drain = [this] { drain(); };
     }
     [[nodiscard]] bool watches() const { return recorder_.has_value(); }
@@ -38,7 +38,7 @@ public:
     /// Up to now.
     [[nodiscard]] Recording& recording() {
         drain();
-        recording_.complete = !full_;
+        recording_.end = full_ ? RecordingEnd::limit : RecordingEnd::whole;
         recording_.lost = full_ ? 0 : recorder_->dropped();
         return recording_;
     }
@@ -50,8 +50,7 @@ private:
             full_ = true;  // the beginning is compared all the same
             return;
         }
-        recording_.frames.push_back({record.channel, record.time, recording_.bytes.size(), record.bytes.size()});
-        recording_.bytes.insert(recording_.bytes.end(), record.bytes.begin(), record.bytes.end());
+        recording_.add(record);
     }
 
     static constexpr std::size_t most = std::size_t{512} << 20;

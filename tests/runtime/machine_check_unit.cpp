@@ -191,6 +191,40 @@ TEST(MachineCheck, ATaskOfAnUnknownProgramAndADivisorOfZero) {
               "task.divisor");
 }
 
+TEST(MachineCheck, TimesAndPriorityOfATask) {
+    const auto with = [](auto change) {
+        auto config = machine_config(1);
+        ProgramConfig program;
+        program.name = "p";
+        config.programs.push_back(program);
+        TaskConfig task;
+        task.name = "main";
+        task.program = "p";
+        task.divisor = 4;
+        config.realtime.priority = 80;
+        change(config, task);
+        config.tasks.push_back(task);
+        const auto errors = check(config);
+        EXPECT_LE(errors.size(), 1u);
+        return errors.empty() ? Error{} : errors[0];
+    };
+    using M = MachineConfig;
+    using T = TaskConfig;
+    EXPECT_EQ(with([](M&, T&) {}).code, "");
+    EXPECT_EQ(with([](M&, T& t) { t.priority = 78; }).code, "");
+    EXPECT_EQ(with([](M&, T& t) { t.priority = 79; }).code, "task.priority") << "the watch stands between it and the cycle";
+    EXPECT_EQ(with([](M&, T& t) { t.priority = 79; }).subject, "programs.p.tasks.main.priority");
+    EXPECT_EQ(with([](M&, T& t) { t.priority = -1; }).code, "task.priority");
+    EXPECT_EQ(with([](M&, T& t) { t.priority = 0; }).code, "") << "an ordinary thread";
+    EXPECT_EQ(with([](M& m, T& t) { m.realtime.priority = 0, t.priority = 1; }).code, "task.priority");
+    EXPECT_EQ(with([](M& m, T&) { m.realtime.priority = 0; }).code, "");
+    EXPECT_EQ(with([](M& m, T& t) { t.watchdog = m.cycle; }).code, "");
+    EXPECT_EQ(with([](M& m, T& t) { t.watchdog = m.cycle - Duration{1}; }).code, "task.watchdog");
+    EXPECT_EQ(with([](M&, T& t) { t.watchdog = Duration{}; }).code, "") << "no limit";
+    EXPECT_EQ(with([](M& m, T& t) { t.divisor = 1, t.watchdog = m.cycle; }).code, "task.base");
+    EXPECT_EQ(with([](M&, T& t) { t.divisor = 1, t.priority = 40; }).code, "task.base");
+}
+
 TEST(MachineCheck, AProgramStartsByItselfOnlyInAutomaticMode) {
     ProgramConfig program;
     program.name = "p";

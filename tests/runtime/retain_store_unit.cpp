@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -110,6 +111,55 @@ TEST(RetainStore, TornOrAlteredSlotFallsBackToTheOther) {
         write(folder.path / "retain.1", altered);
         EXPECT_EQ(RetainStore(folder.path).load().kept.axes.at(0).position.counts, 1) << at;
     }
+}
+
+// Somebody copied the files back as another user. A link to itself stands for that here: root reads whatever is there.
+TEST(RetainStore, AFileThatCannotBeReadIsLostUntilItCanAndIsNotWrittenOver) {
+    Folder folder;
+    for (const auto* name : {"retain.0", "retain.1"}) fs::create_symlink(name, folder.path / name);
+    RetainStore store(folder.path);
+    const auto loaded = store.load();
+    EXPECT_TRUE(loaded.lost) << "something is there";
+    ASSERT_EQ(loaded.damage.size(), 2u);
+    EXPECT_EQ(loaded.damage[0].code, "retain.unreadable");
+
+    for (int i = 1; i <= 2; ++i) ASSERT_TRUE(store.save(keeping({at("x", i)})).ok());
+    EXPECT_EQ(RetainStore(folder.path).load().kept.axes.at(0).position.counts, 2);
+    for (const auto* name : {"retain.0.unread", "retain.1.unread"}) EXPECT_TRUE(fs::is_symlink(folder.path / name)) << name;
+}
+
+TEST(RetainStore, APipeInThePlaceOfAFileHoldsNobodyUp) {
+    Folder folder;
+    ASSERT_EQ(::mkfifo((folder.path / "retain.0").c_str(), 0600), 0);
+    const auto loaded = RetainStore(folder.path).load();
+    ASSERT_EQ(loaded.damage.size(), 1u);
+    EXPECT_EQ(loaded.damage[0].code, "retain.unreadable");
+}
+
+// Who cannot open the lock cannot see whether it is held.
+TEST(RetainStore, ALockThatCannotBeOpenedKeepsEverybodyOut) {
+    Folder folder;
+    fs::create_symlink("nowhere", folder.path / "retain.lock");
+    RetainStore store(folder.path);
+    const auto refused = store.lock();
+    ASSERT_TRUE(refused.has_value());
+    EXPECT_EQ(refused->code, "retain.lock");
+    fs::remove(folder.path / "retain.lock");
+    EXPECT_FALSE(store.lock().has_value());
+}
+
+TEST(RetainStore, WhatCouldNotBeReadAgainIsNotWritten) {
+    Folder folder;
+    RetainStore store(folder.path);
+    (void)store.load();
+    ASSERT_TRUE(store.save(keeping({at("x", 1)})).ok());
+    const auto refused = store.save(keeping({at("x", 1), at("x", 2)}));
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, "retain.not_readable");
+    RetainStore other(folder.path);
+    const auto loaded = other.load();
+    EXPECT_TRUE(loaded.damage.empty());
+    EXPECT_EQ(loaded.kept.axes.at(0).position.counts, 1);
 }
 
 // A slot that somebody wrote by hand, with a check sum that fits.

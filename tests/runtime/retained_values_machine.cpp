@@ -1,6 +1,7 @@
 // Programs over a time without power, in virtual time on a real directory: what they keep stands before their first scan, no more is lost
 // than was promised, and a disk that fails costs an alarm and nothing else.
 
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -230,6 +231,19 @@ TEST_F(RetainedValues, ADiskThatTakesNothingCostsAnAlarmAndNothingElse) {
     EXPECT_GT(std::stod(kept_text("p.scans")), 100);
 }
 
+TEST_F(RetainedValues, ADamagedSlotIsSaidAndTheOtherOneUsed) {
+    run(config(), 2s);
+    end();
+    ASSERT_TRUE(fs::exists(directory / "kept/retain.1"));
+    std::ofstream(directory / "kept/retain.1", std::ios::app) << "x";
+    run(config(), 100ms);
+    EXPECT_GT(value("found"), 0);
+    std::string said;
+    for (const auto& line : lines_of(machine->machine->retain_notes())) said += line + "\n";
+    EXPECT_THAT(said,
+                ::testing::AllOf(::testing::HasSubstr("retain.1: the file is torn or altered"), ::testing::HasSubstr("the other file")));
+}
+
 TEST_F(RetainedValues, BothSlotsDamagedIsAnAlarmUntilReset) {
     run(config(), 2s);
     end();
@@ -269,6 +283,37 @@ TEST_F(RetainedValues, WhatCouldNotBeReadAgainIsRefusedAndTheMostThatIsTakenCome
     end();
     EXPECT_EQ(kept().values.size(), most_kept_values);
     EXPECT_EQ(kept_text("p.values[8191]"), "1");
+}
+
+/// A counter whose pin CV and a variable have one name. What it wrote could not be read again, positions of axes neither.
+template <int Case>
+struct SameNames final : Program {
+    fb::CTU count;
+    std::int16_t value = 0;
+    void declare(Declaration& d) override {
+        d.retain("count", count);
+        d.retain(Case == 1 ? "count.CV" : Case == 2 ? "count" : "count.Axis", value);
+        d.task<&SameNames::scan>("main");
+    }
+    void scan(TaskContext&) {}
+};
+
+TEST_F(RetainedValues, AVariableWithTheNameOfAPinThatIsKeptIsRefused) {
+    const auto problems = [&](const ProgramEntry* (*entry)()) {
+        auto c = config();
+        c.programs[0].entry = entry;
+        World world{c, Instant{}};
+        const auto built = Machine::build(c, world.bus());
+        std::string codes;
+        if (built.index() == 1)
+            for (const auto& error : std::get<1>(built)) codes += error.code + " " + error.what + "\n";
+        return codes;
+    };
+
+    EXPECT_THAT(problems(&entry_of<SameNames<1>>),
+                ::testing::AllOf(::testing::HasSubstr("program.duplicate_name"), ::testing::HasSubstr("'p.count.CV'")));
+    EXPECT_EQ(problems(&entry_of<SameNames<2>>), "program.duplicate_name kept variable 'count' is declared twice\n") << "once";
+    EXPECT_EQ(problems(&entry_of<SameNames<3>>), "") << "a counter has no such pin";
 }
 
 TEST_F(RetainedValues, AButtonIsNotKept) {

@@ -1,6 +1,7 @@
 // Two programs on one machine: what ends with one of them, and what does not.
 
 #include "fb_library/all_blocks.hpp"
+#include "runtime/alarms.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -82,6 +83,14 @@ TEST_P(TwoPrograms, AStopTakesTheAxesOfThatProgramAndNoOthers) {
     ASSERT_EQ(m().command(OperatorAction::program_stop, 1).answer, Answer::accepted);
     EXPECT_TRUE(m().until([&] { return m().axis(1).state == AxisState::Disabled; }, 2s));
     m().expect_no_jump();
+}
+
+// The last program that ran has not given it.
+TEST_P(TwoPrograms, AStopByAPersonIsNoQuarrelOfTwoPrograms) {
+    start(&entry_of<Runs<'x', 'x', true>>, &entry_of<Runs<'y', 'y', false>>);
+    (void)m().machine->request_stop(0xFFFF);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).set_velocity == 0 && m().axis(1).set_velocity == 0; }, 3s));
+    EXPECT_FALSE(m().has_alarm(id(MachineAlarm::axis_of_two_programs))) << m().alarms();
 }
 
 TEST_P(TwoPrograms, AnOutputThatTheOtherOneDrivesTooStays) {

@@ -52,6 +52,7 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
 void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     const auto image = place_.bus().outputs();
     starting_.write_once(image);
+    settings_.reset(command.reset_fault);
     const auto mode = mode_.send(command.mode, profile_->mode_rules, now, [&] { return place_.effective(now); });
     const bool mode_confirmed = feedback_.mode == command.mode && mode == command.mode;
     if (command.mode != DriveMode::homing) homing_setup_.release();

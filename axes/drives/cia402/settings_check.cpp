@@ -62,6 +62,11 @@ void SettingsCheck::online(bool now) noexcept {
     online_ = now;
 }
 
+void SettingsCheck::reset(bool asked) noexcept {
+    if (asked && !reset_asked_ && verdict() == Verdict::refused) wanted_.fetch_add(1, std::memory_order_acq_rel);
+    reset_asked_ = asked;
+}
+
 void SettingsCheck::changed(ParameterAddress address) noexcept {
     if (!reading(address)) return;
     for (const auto& row : profile_.parameters)

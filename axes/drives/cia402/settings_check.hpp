@@ -33,6 +33,8 @@ public:
     // --- in the cycle; real-time safe ---------------------------------------------------------------------------------
     /// Whether the drive is in OP; what is known of its parameters ends when it leaves.
     void online(bool now) noexcept;
+    /// Level. A reset while they are refused reads them again: they were set at the drive meanwhile, or could not be read.
+    void reset(bool asked) noexcept;
     /// `unknown` as long as the drive is away or the reading goes on: it is not enabled meanwhile.
     [[nodiscard]] Verdict verdict() const noexcept;
     /// 606Ch, 60FFh, 607Fh raw = counts/s times this, in the units that the drive is in.
@@ -80,7 +82,7 @@ private:
     std::atomic<std::uint64_t> judged_{0};  // count << 8 | verdict
     std::atomic<double> velocity_;
     std::atomic<std::uint16_t> hidden_{0};
-    bool online_ = false;
+    bool online_ = false, reset_asked_ = false;
 
     std::uint32_t under_way_ = 0;  // the count that is being read; 0: none
     std::size_t next_ = 0;

@@ -276,7 +276,7 @@ TEST_F(Unfit, ARecordingThatWasCutOffIsReplayedUpToItsLastWholeCycle) {
     for (std::size_t cut = 1; cut < 15; ++cut) {
         auto recording = whole;
         recording.frames.resize(whole.size() - cut);
-        recording.complete = false;
+        recording.end = RecordingEnd::torn;
         const auto replayed = replay_all(r.recorded.config(), recording);
         EXPECT_TRUE(replayed.identical()) << cut << " records less: " << replayed.text();
         EXPECT_GT(replayed.cycles, 40u);

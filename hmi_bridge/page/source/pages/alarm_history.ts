@@ -9,7 +9,7 @@ import { said, said_element } from '../sentences/said';
 import { MachineState } from '../state';
 import { Key, say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
-import { alarm_tabs, recording_link } from './alarms';
+import { alarm_tabs, recording_link } from './alarm_parts';
 
 export interface PastAlarm {
     id: number;

@@ -1,18 +1,13 @@
 // What stands, in words, with cause and remedy; and what the machine refused.
 import { in_words, key_of, stops, where } from '../alarm_words';
-import { Desk, Page, panel, sub_tabs } from '../desk';
+import { Desk, Page, panel } from '../desk';
 import { duration } from '../numbers';
 import { said, said_element, write_said } from '../sentences/said';
 import { CommandEvent, MachineState } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
 import { alarm_history } from './alarm_history';
-
-export const alarm_tabs = (shown: 'standing' | 'history'): HTMLElement => sub_tabs('alarms', [['alarms', 'alarms_standing'], ['alarms/history', 'alarms_history']], shown === 'standing' ? 'alarms' : 'alarms/history');
-/** One click opens what was recorded around the alarm, in the scope. */
-export function recording_link(name: string | undefined): HTMLElement {
-    return name ? element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(name)}`, 'data-recording': name }, say('open_recording')) : element('span', {}, '–');
-}
+import { alarm_tabs, recording_link } from './alarm_parts';
 
 /** `#alarms`: what stands; `#alarms/history`: what stood. */
 export function alarms(desk: Desk, [kind = '']: readonly string[]): Page {

@@ -44,5 +44,9 @@ export const machine_alarms: Readonly<Record<string, string>> = {
     'Its coupling opened or its cable was pulled before MC_Power was taken away, or the group lost its supply': '在撤销 MC_Power 之前联接被断开或电缆被拔出，或该组失去电源',
     'Make sure that nothing has fallen; connect the group again or lay it down, then reset. A program takes Enable away and waits for Status before it uncouples': '确认没有物体坠落；重新连接该组或将其放好，然后复位。程序应先撤销 Enable 并等待 Status 再脱开',
     'Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)': '有人用自己的值代替了实际值（例如在输入输出页面）',
+    'An endless loop, a wait or a long computation in this task, or other work kept it from the processor': '该任务中有死循环、等待或长时间计算，或被其他工作占用了处理器',
+    'Mend the task, do its work in pieces, or give it a longer `watchdog`; reset, then start the program. While the task still has not come back its program cannot be started: end the run and start it again': '修正该任务，把工作分段，或加长 `watchdog`；复位，然后启动程序。任务仍未返回时其程序无法启动：结束运行并重新启动',
+    'The task computes too long for its period, or other work keeps it from the processor': '任务的计算时间超过其周期，或被其他工作占用了处理器',
+    'Shorten the task, raise `every`, or allow more (`overruns_allowed`, `overrun: count`); reset, then start the program. While the task still has not come back its program cannot be started: end the run and start it again': '缩短任务，加大 `every`，或允许更多（`overruns_allowed`、`overrun: count`）；复位，然后启动程序。任务仍未返回时其程序无法启动：结束运行并重新启动',
     '`taktwerk unforce`, or let who forced them end his session; `state` tells which points and who': '解除强制，或让强制者结束其会话；输入输出页面显示哪些点被谁强制',
 };

@@ -157,6 +157,8 @@ export const refusals: Readonly<Record<string, string>> = {
     'Stop the programs first': '先停止程序',
     'its program does not run, or the machine is shutting down: nobody would see the press': '其程序未运行，或机器正在关机：按下不会有人接收',
     'Start the program, then press again': '启动程序，然后重新按下',
+    'the program has not ended yet: its stop() is still to come, or a task of it has not come back (its alarm names it)': '程序尚未结束：其 stop() 尚未执行，或其某个任务尚未返回（报警中有名称）',
+    'Wait for it; where it never comes back, end the run, mend the program and start it again': '请等待；若永不返回，则结束运行，修正程序并重新启动',
     'the program is in fault, or the machine is shutting down': '程序处于故障，或机器正在关机',
     'Reset the program, then start it': '复位程序，然后启动',
     'the machine is shutting down': '机器正在关机',

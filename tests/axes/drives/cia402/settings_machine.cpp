@@ -117,6 +117,27 @@ TEST_F(DriveSettings, WhatCannotBeReadIsNotTakenForRight) {
     EXPECT_THAT(rig.drive->setup_problems(), ElementsAre(HasSubstr("2006h:01 could not be read")));
 }
 
+// Set at the drive's own panel: nothing on the bus tells of it. Who resets the axis says that it was mended.
+TEST_F(DriveSettings, AResetReadsThemAgain) {
+    rig.profile.required_settings = {row({0x2005, 0x0B}, {1})};
+    build();
+    rig.run(200);
+    ASSERT_TRUE(rig.feedback().setup_refused);
+    rig.command.reset_fault = true;
+    rig.run(200);
+    EXPECT_TRUE(rig.feedback().setup_refused) << "nothing was mended";
+    EXPECT_FALSE(rig.told_to_enable());
+    rig.command.reset_fault = false;
+    rig.network.slave(0).dictionary().find(0x2005, 0x0B)->set(1);
+    rig.run(200);
+    EXPECT_TRUE(rig.feedback().setup_refused);
+    rig.command.reset_fault = true;
+    rig.run(200);
+    EXPECT_TRUE(rig.told_to_enable());
+    EXPECT_FALSE(rig.feedback().setup_refused);
+    EXPECT_THAT(rig.drive->setup_problems(), IsEmpty());
+}
+
 // P4.07: place n of the list is the cycle (SV-DA200 2.1 note 2). The rig exchanges every millisecond.
 TEST_F(DriveSettings, ACycleThatIsNotThatOfTheBusIsRefused) {
     RequiredSetting cycle = row({0x2005, 0x0B}, {});

@@ -1,0 +1,139 @@
+// taktwerk doctor: is this computer fit for a machine's cycle, and what would mend it?
+
+#include <unistd.h>
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "apps/doctor/changes.hpp"
+#include "apps/doctor/examine.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/duration_option.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
+#include "apps/terminal/terminal_size.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+struct DoctorOptions {
+    std::string interface;
+    double cycle_s = 1e-3, computing_s = 0, duration_s = 5;
+    int cpu = -1;
+    bool json = false, apply = false, revert = false, no_measuring = false, why = false;
+};
+
+Duration of_seconds(double seconds) { return Duration{static_cast<std::int64_t>(seconds * 1e9 + 0.5)}; }
+
+int exit_code_of(Severity fitness) {
+    return fitness == Severity::unfit ? exit_realtime : fitness == Severity::warning ? exit_warnings : exit_ok;
+}
+
+/// False: something of it could not be done.
+bool say(const std::vector<ChangeOutcome>& outcomes, const char* nothing) {
+    bool all = true;
+    for (const auto& outcome : outcomes) {
+        fmt::print("  {}\n", outcome.words);
+        if (outcome.error) {
+            print_error(*outcome.error);
+            all = false;
+        }
+        all = all && !outcome.left;
+    }
+    if (outcomes.empty()) fmt::print("  {}\n", nothing);
+    return all;
+}
+
+int change(const DoctorOptions& options, const Examination& seen, EthernetPorts& ports) {
+    if (::geteuid() != 0) {
+        print_error({"doctor.needs_root", options.apply ? "--apply" : "--revert", "settings of this computer are changed by root alone",
+                     "sudo taktwerk doctor ...; without --apply it only looks, and shows the commands"});
+        return exit_refused;
+    }
+    Changes changes{"/", ports};
+    if (options.revert) {
+        const auto done = changes.revert();
+        if (!done) return print_error(done.error()), exit_bad_file;
+        fmt::print("Taken back:\n");
+        return say(*done, "nothing: no change of `doctor --apply` is recorded here") ? exit_ok : exit_warnings;
+    }
+    std::vector<Change> wanted;
+    for (const auto& finding : seen.findings) wanted.insert(wanted.end(), finding.changes.begin(), finding.changes.end());
+    const auto done = changes.apply(wanted);
+    if (!done) return print_error(done.error()), exit_bad_file;
+    fmt::print("Changed (`taktwerk doctor --revert` takes it back):\n");
+    const bool all = say(*done, "nothing: what can be changed from here is as it should be");
+    std::vector<std::string> commands;
+    for (const auto& finding : seen.findings)
+        if (!finding.changes.empty() && !finding.then.empty()) commands.push_back(finding.then);
+    for (const auto& command : commands) fmt::print("  takes effect with: {}\n", command);
+    fmt::print("\n");
+    return all ? exit_ok : exit_bad_file;
+}
+
+int run_doctor(const DoctorOptions& options) {
+    Wanted wanted;
+    wanted.cycle = of_seconds(options.cycle_s);
+    wanted.computing = options.computing_s > 0 ? of_seconds(options.computing_s) : wanted.cycle / 10;
+    wanted.cpu = options.cpu;
+    if (wanted.cycle < std::chrono::microseconds{50} || wanted.cycle > std::chrono::seconds{1}) {
+        print_error({"usage.cycle", "--cycle", "a cycle of 50 us to 1 s is wanted", "leave it out for 1ms"});
+        return exit_usage;
+    }
+    KernelEthernetPorts ports;
+    if (options.revert) return change(options, {}, ports);
+    auto seen = examine("/", ports, wanted, options.interface);
+    if (options.cpu >= 0 && !HostFiles{}.exists(fmt::format("/sys/devices/system/cpu/cpu{}", options.cpu))) {
+        print_error({"realtime.cpus", fmt::format("CPU {}", options.cpu), "there is no such CPU", "See `lscpu`"});
+        return exit_usage;
+    }
+    if (options.apply) {
+        if (const int code = change(options, seen, ports); code != exit_ok) return code;
+        seen = examine("/", ports, wanted, options.interface);
+    }
+    if (!options.no_measuring) {
+        if (!options.json && terminal_size()) fmt::print(stderr, "measuring for {} ...\n", time_text(of_seconds(options.duration_s)));
+        measure(seen, of_seconds(options.duration_s));
+    }
+    if (options.json) {
+        fmt::print("{}\n", report_json(seen).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    } else {
+        fmt::print("{}", report_text(seen, colours_of_output(), terminal_size().value_or(TerminalSize{100, 24}).columns,
+                                     options.why ? Sources::shown : Sources::hidden));
+        if (options.computing_s <= 0)
+            fmt::print(
+                "Computing time was taken as a tenth of the cycle; `--computing 200us` says it (`taktwerk status` of a running machine has "
+                "it).\n");
+    }
+    const bool no_port = std::any_of(seen.findings.begin(), seen.findings.end(), [](const Finding& f) { return f.code == "port.missing"; });
+    return no_port ? exit_bus : exit_code_of(seen.verdict.fitness);
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand(
+        "doctor",
+        "is this computer fit for a machine's cycle? what it costs, and how to mend it; exit code 0: fit, 1: with warnings, 7: not");
+    auto options = std::make_shared<DoctorOptions>();
+    sub->add_option("--nic", options->interface,
+                    "network interface of the bus: looked at as well, and measured with frames that change nothing");
+    add_duration(*sub, "--cycle", options->cycle_s, "cycle that is wanted; default: 1ms");
+    add_duration(*sub, "--computing", options->computing_s, "computing time of a cycle; default: a tenth of it");
+    sub->add_option("--cpu", options->cpu, "CPU of the cycle (`realtime: {cpus: [N]}`); default: any")->check(CLI::Range(0, 1023));
+    add_duration(*sub, "--duration", options->duration_s,
+                 "of measuring; default: 5s. For a judgement that lasts: 1h, with the computer as busy as it will be");
+    sub->add_flag("--no-measuring", options->no_measuring, "only look");
+    sub->add_flag("--why", options->why, "where each figure is from");
+    sub->add_flag("--json", options->json, "everything as one JSON object, with histograms");
+    auto* apply = sub->add_flag("--apply", options->apply, "mend what can be mended from here, and say each change; needs root");
+    sub->add_flag("--revert", options->revert, "put back exactly what was there before --apply; needs root")->excludes(apply);
+    sub->footer(
+        "  taktwerk doctor --nic eth1 --cycle 1ms --cpu 3\n"
+        "  taktwerk doctor --nic eth1 --cycle 1ms --cpu 3 --duration 1h      a judgement that lasts\n"
+        "  sudo taktwerk doctor --nic eth1 --apply");
+    sub->callback([&action, options] { action = [options] { return run_doctor(*options); }; });
+}
+
+}  // namespace taktwerk::apps

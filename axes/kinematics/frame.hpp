@@ -1,0 +1,109 @@
+#pragma once
+// A rotation matrix with an origin, over any kind of number: forward kinematics are written once and fed with plain numbers, with jets (for
+// derivatives) and, in tests, with complex ones. Pure, real-time safe.
+
+#include <array>
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "axes/pose_math.hpp"
+
+namespace taktwerk::axes {
+
+template <class S>
+using Triple = std::array<S, 3>;
+
+template <class S>
+[[nodiscard]] constexpr Triple<S> cross(const Triple<S>& a, const Triple<S>& b) noexcept {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+template <class S>
+[[nodiscard]] constexpr S dot(const Triple<S>& a, const Triple<S>& b) noexcept {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <class S>
+[[nodiscard]] constexpr Triple<S> minus(const Triple<S>& a, const Triple<S>& b) noexcept {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+/// a + factor * b
+template <class S>
+[[nodiscard]] constexpr Triple<S> plus(const Triple<S>& a, const S& factor, const Triple<S>& b) noexcept {
+    return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
+}
+
+template <class S>
+struct Frame {
+    std::array<Triple<S>, 3> axis{{{S(1), S(0), S(0)}, {S(0), S(1), S(0)}, {S(0), S(0), S(1)}}};  ///< x, y, z: columns of the matrix
+    Triple<S> origin{};
+
+    /// Turns about its own axis `around` (0 x, 1 y, 2 z), given sine and cosine.
+    constexpr void turn(std::size_t around, const S& sine, const S& cosine) noexcept {
+        Triple<S>& a = axis[(around + 1) % 3];
+        Triple<S>& b = axis[(around + 2) % 3];
+        for (std::size_t i = 0; i < 3; ++i) {
+            const S along = a[i];
+            a[i] = cosine * along + sine * b[i];
+            b[i] = cosine * b[i] - sine * along;
+        }
+    }
+    void turn(std::size_t around, const S& angle) noexcept {
+        using std::cos;
+        using std::sin;
+        turn(around, sin(angle), cos(angle));
+    }
+};
+
+/// Seen from this frame, in the frame that `f` is seen from.
+template <class S>
+[[nodiscard]] constexpr Triple<S> rotated(const Frame<S>& f, const Triple<double>& v) noexcept {
+    Triple<S> r;
+    for (std::size_t i = 0; i < 3; ++i) r[i] = f.axis[0][i] * S(v[0]) + f.axis[1][i] * S(v[1]) + f.axis[2][i] * S(v[2]);
+    return r;
+}
+template <class S>
+[[nodiscard]] constexpr Frame<S> operator*(const Frame<S>& outer, const Frame<double>& inner) noexcept {
+    Frame<S> r;
+    for (std::size_t k = 0; k < 3; ++k) r.axis[k] = rotated(outer, inner.axis[k]);
+    r.origin = plus(outer.origin, S(1), rotated(outer, inner.origin));
+    return r;
+}
+
+[[nodiscard]] constexpr Frame<double> inverse_of(const Frame<double>& f) noexcept {
+    Frame<double> r;
+    for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < 3; ++i) r.axis[k][i] = f.axis[i][k];
+    r.origin = {};
+    for (std::size_t i = 0; i < 3; ++i) r.origin[i] = -dot(f.axis[i], f.origin);
+    return r;
+}
+[[nodiscard]] inline Frame<double> turned(std::size_t around, double angle) noexcept {
+    Frame<double> r;
+    r.turn(around, angle);
+    return r;
+}
+[[nodiscard]] constexpr Frame<double> shifted(double x, double y, double z) noexcept {
+    Frame<double> r;
+    r.origin = {x, y, z};
+    return r;
+}
+
+[[nodiscard]] inline Eigen::Vector3d vector_of(const Triple<double>& t) noexcept { return {t[0], t[1], t[2]}; }
+[[nodiscard]] inline Triple<double> triple_of(const Eigen::Vector3d& v) noexcept { return {v.x(), v.y(), v.z()}; }
+
+[[nodiscard]] inline Frame<double> frame_of(const Pose& pose) noexcept {
+    const Eigen::Matrix3d turn = orientation_of(pose).toRotationMatrix();
+    return {{{triple_of(turn.col(0)), triple_of(turn.col(1)), triple_of(turn.col(2))}}, pose.position};
+}
+/// The quaternion with w >= 0.
+[[nodiscard]] inline Pose pose_of(const Frame<double>& frame) noexcept {
+    Eigen::Matrix3d turn;
+    for (int k = 0; k < 3; ++k) turn.col(k) = vector_of(frame.axis[static_cast<std::size_t>(k)]);
+    Eigen::Quaterniond q{turn};
+    q.normalize();
+    if (q.w() < 0) q.coeffs() = -q.coeffs();
+    return pose_of(vector_of(frame.origin), q);
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,51 @@
+// The campaign over whole machines. 100 seeds in a test run, 5,000 with TAKTWERK_SOAK_FACTOR=50 (`./dev nightly`). A failure names its seed:
+// TAKTWERK_WHOLE=SEED[:MACHINE[:TROUBLE]] runs that one alone and tells all that was done. TAKTWERK_WHOLE_FIRST=SEED begins there.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "tests/property_cases.hpp"
+#include "tests/whole_machine/loading.hpp"
+#include "tests/whole_machine/whole_run.hpp"
+
+namespace taktwerk::whole {
+namespace {
+
+std::string title(const WholeRun& run) {
+    std::string out = fmt::format("seed {}: {} while {}:", run.seed, run.machine, moment_names[static_cast<std::size_t>(run.moment)]);
+    for (const auto trouble : run.troubles) out += fmt::format(" {}", name(trouble));
+    return out;
+}
+
+TEST(WholeCampaign, EachRunEndsAsDocumented) {
+    if (const char* asked = std::getenv("TAKTWERK_WHOLE")) {
+        std::istringstream words{asked};
+        std::string seed, machine, trouble;
+        std::getline(words, seed, ':');
+        std::getline(words, machine, ':');
+        std::getline(words, trouble, ':');
+        const auto run = run_whole(static_cast<std::uint32_t>(std::stoul(seed)), machine, trouble);
+        fmt::print("{}\n{}", title(run), run.story);
+        for (const auto& problem : run.problems) ADD_FAILURE() << problem;
+        return;
+    }
+    const char* first = std::getenv("TAKTWERK_WHOLE_FIRST");
+    const auto begin = first ? static_cast<std::uint32_t>(std::stoul(first)) : 1u;
+    const auto runs = static_cast<std::uint32_t>(property_cases(100));
+    long commands = 0;
+    for (auto seed = begin; seed < begin + runs; ++seed) {
+        const auto run = run_whole(seed);
+        commands += run.commands;
+        if (run.problems.empty()) continue;
+        std::string all;
+        for (const auto& problem : run.problems) all += "\n  " + problem;
+        ADD_FAILURE() << title(run) << all << "\n again: TAKTWERK_WHOLE=" << seed << " build/dev/tests/whole_machine_property";
+    }
+    fmt::print("{} runs, {} commands\n", runs, commands);
+}
+
+}  // namespace
+}  // namespace taktwerk::whole
