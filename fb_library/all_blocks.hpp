@@ -6,6 +6,7 @@
 #include "fb_library/block_type.hpp"
 #include "fb_library/fieldbus/sdo.hpp"
 #include "fb_library/groups/group_administration.hpp"
+#include "fb_library/groups/group_limits.hpp"
 #include "fb_library/groups/group_moves.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "axes/axis/axis_config.hpp"
+#include "axes/group/group_config.hpp"
 #include "axes/port/drive_profile.hpp"
 #include "axes/port/encoder_channel.hpp"
 #include "axes/sim/plant_config.hpp"
@@ -219,6 +220,7 @@ struct MachineConfig {
     std::vector<SerialLineConfig> serial;
     std::vector<modbus::tcp::DeviceConfig> modbus;  ///< their points have `beside`
     std::vector<AxisBinding> axes;
+    std::vector<axes::AxisGroupConfig> axis_groups{};  ///< of axes that move together, for programs
     std::vector<IoPoint> io;
     std::vector<TaskConfig> tasks;
     std::vector<CamConfig> cams;

@@ -99,7 +99,7 @@ void AxisGroup::watch_reset() noexcept {
 }
 
 void AxisGroup::plan(Instant, Duration period) noexcept {
-    if (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || shuts_down_) {
+    if (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0) {
         if (run_.over() || !members_.led()) settle();
         if (members_.led()) go_on(period);
     }
@@ -114,11 +114,11 @@ void AxisGroup::settle() noexcept {
         disabling_ = 0;
         return;
     }
-    if (shuts_down_) {
-        shuts_down_ = false;
+    if (going_off_ != 0) {
+        const auto off = std::exchange(going_off_, std::uint16_t{0});
         leave(state_ == GroupState::GroupStopping ? GroupEvent::stopped : GroupEvent::done);
         for (std::size_t i = 0; i < most_members; ++i)
-            if (members_.has(i)) members_.axis(i).shut_down();
+            if ((off >> i & 1u) != 0 && members_.has(i)) members_.axis(i).shut_down();
         return;
     }
     if (state_ == GroupState::GroupErrorStop) return leave(GroupEvent::error);

@@ -39,8 +39,10 @@ public:
     // --- the machine's hand ----------------------------------------------------------------------------------------------
     /// As MC_GroupHalt, whoever commands it.
     void halt() noexcept;
-    /// Halts on the path and takes its members' power then (Axis::shut_down). Nothing where it leads no axis.
-    void shut_down() noexcept;
+    /// Whoever commanded it is gone: halts, forgets what was interrupted or waits, gives up the lock of a stop.
+    void let_go() noexcept;
+    /// For a member that it leads: halts on the path, and shuts that axis down when it stands (Axis::shut_down).
+    void shut_down(AxisRef axis) noexcept;
 
     // --- requests (GroupAccess, for one group) ----------------------------------------------------------------------------
     Submitted submit(const GroupCommand& command, Owner owner) noexcept;
@@ -81,9 +83,9 @@ private:
     JointVector hold_{};  // where the members stand without a run
     Duration cycle_;
     GroupState state_ = GroupState::GroupDisabled;
-    bool begun_ = false;        // the active command has begun
-    bool interrupted_ = false;  // it stands, and what was under way may go on
-    bool shuts_down_ = false;   // power goes when it stands
+    bool begun_ = false;           // the active command has begun
+    bool interrupted_ = false;     // it stands, and what was under way may go on
+    std::uint16_t going_off_ = 0;  // places that are shut down when it stands
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
     Duration elapsed_{};  // of the active command
 };

@@ -34,7 +34,7 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
     if (kind == GroupCommandKind::disable) return disabling_ == 0 ? ErrorId::none : ErrorId::state_forbids;
     if (state_ == GroupDisabled) return ErrorId::group_disabled;
     if (state_ == GroupErrorStop) return ErrorId::in_error_stop;
-    if (disabling_ != 0 || shuts_down_) return ErrorId::state_forbids;
+    if (disabling_ != 0 || going_off_ != 0) return ErrorId::state_forbids;
     if (kind == GroupCommandKind::stop) return lock_ == 0 ? ErrorId::none : ErrorId::state_forbids;
     if (state_ == GroupStopping) return ErrorId::state_forbids;
     if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
@@ -166,7 +166,7 @@ CommandId AxisGroup::take_disable() noexcept {
 }
 
 void AxisGroup::halt() noexcept {
-    const bool stops = interrupting_ != 0 || disabling_ != 0 || shuts_down_ || queue_.active().command.kind == GroupCommandKind::halt;
+    const bool stops = interrupting_ != 0 || disabling_ != 0 || going_off_ != 0 || queue_.active().command.kind == GroupCommandKind::halt;
     if (state_ != GroupState::GroupMoving || !members_.led() || stops) return;
     GroupCommand command;
     command.kind = GroupCommandKind::halt;
@@ -174,12 +174,26 @@ void AxisGroup::halt() noexcept {
     publish();
 }
 
-void AxisGroup::shut_down() noexcept {
-    if (!members_.led()) return;
-    abort_all();
+void AxisGroup::let_go() noexcept {
     lock_ = 0;
-    shuts_down_ = true;
-    run_.stop({}, Override{}, cycle_);
+    if (members_.led()) {
+        halt();
+    } else {
+        abort_all();
+        if (state_ == GroupState::GroupStopping) fire(GroupEvent::stopped);
+    }
+    publish();
+}
+
+void AxisGroup::shut_down(AxisRef axis) noexcept {
+    if (!members_.led()) return;
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (members_.refs()[i] == axis) going_off_ = static_cast<std::uint16_t>(going_off_ | 1u << i);
+    if (state_ != GroupState::GroupErrorStop) {
+        abort_all();
+        lock_ = 0;
+        run_.stop({}, Override{}, cycle_);
+    }
     publish();
 }
 

@@ -1,12 +1,10 @@
 #pragma once
 // Where a group is and how fast: MC_GroupReadPosition, MC_GroupReadVelocity, MC_GroupReadAcceleration (v2.0), MC_GroupReadActualPosition,
-// MC_GroupReadActualVelocity (v1.0), and the dynamics that count where a command says none: MC_GroupWriteDefaultDynamics,
-// MC_GroupReadDefaultDynamics; MC_GroupReadSWLimits. PLCopen Part 4. Real-time safe. Values go back whenever Valid is FALSE.
+// MC_GroupReadActualVelocity (v1.0). PLCopen Part 4. Real-time safe. Values go back whenever Valid is FALSE.
 
 #include <cmath>
 #include <string_view>
 
-#include "axes/axis/parameters.hpp"
 #include "fb_library/groups/group_block.hpp"
 
 namespace taktwerk::fb {
@@ -179,80 +177,6 @@ struct MC_GroupReadActualVelocity : GroupReadBlock<MC_GroupReadActualVelocity> {
         Velocity = {};
         PathVelocity = 0;
     }
-};
-
-/// 0 or less leaves a value as it is.
-struct MC_GroupWriteDefaultDynamics : GroupSettingBlock<MC_GroupWriteDefaultDynamics> {
-    GroupRef AxesGroup{};
-    bool Execute = false;
-    double Velocity = -1, Acceleration = -1, Deceleration = -1, Jerk = -1;
-
-    bool Done = false, Busy = false, Error = false;
-    ErrorId ErrorID{};
-
-    static constexpr std::string_view summary = "Says how fast the group moves where a command does not.";
-    static consteval auto pins() {
-        return pin_table(
-            grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Velocity>("u/s", "along the path; 0 or less = stays as it is"),
-            in<&Self::Acceleration>("u/s2", "likewise"), in<&Self::Deceleration>("u/s2", "likewise"), in<&Self::Jerk>("u/s3", "likewise"),
-            out<&Self::Done>("", "later commands have them"), grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
-    }
-    [[nodiscard]] axes::GroupSetting setting() const noexcept {
-        return axes::WriteDynamics{axes::WriteDynamics::Which::default_dynamics, {Velocity, Acceleration, Deceleration, Jerk}};
-    }
-};
-
-struct MC_GroupReadDefaultDynamics : GroupReadBlock<MC_GroupReadDefaultDynamics> {
-    GroupRef AxesGroup{};
-    bool Enable = false;
-
-    bool Valid = false, Busy = false, Error = false;
-    ErrorId ErrorID{};
-    double Velocity = 0, Acceleration = 0, Deceleration = 0, Jerk = 0;
-
-    static constexpr std::string_view summary = "Gives how fast the group moves where a command does not say it.";
-    static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
-                         out<&Self::Velocity>("u/s", "along the path; 0 = what the axes' limits leave"),
-                         out<&Self::Acceleration>("u/s2", "likewise"), out<&Self::Deceleration>("u/s2", "likewise"),
-                         out<&Self::Jerk>("u/s3", "likewise"));
-    }
-    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
-        const auto& known = view.default_dynamics;
-        Velocity = known.velocity;
-        Acceleration = known.acceleration;
-        Deceleration = known.deceleration;
-        Jerk = known.jerk;
-        return Reading::valid();
-    }
-    void clear() noexcept { Velocity = Acceleration = Deceleration = Jerk = 0; }
-};
-
-/// The axes' own limits: there are no others.
-struct MC_GroupReadSWLimits : GroupReadBlock<MC_GroupReadSWLimits> {
-    GroupRef AxesGroup{};
-    bool Enable = false;
-
-    bool Valid = false, Busy = false, Error = false;
-    ErrorId ErrorID{};
-    MC_GROUP_SWLIMITS LimitValues{};
-
-    static constexpr std::string_view summary = "Gives the software limits of all members.";
-    static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::LimitValues>("", "u; infinity = none"));
-    }
-    [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
-        const axes::GroupView* view = view_of(ctx, AxesGroup);
-        if (view == nullptr) return Reading::unless(ErrorId::invalid_group);
-        for (std::size_t i = 0; i < axes::most_members; ++i) {
-            const axes::AxisView* axis = view->has(i) ? ctx.view(view->members[i]) : nullptr;
-            LimitValues.Axes[i] = axis == nullptr ? MC_GROUP_SWLIMITS::Limits{}
-                                                  : MC_GROUP_SWLIMITS::Limits{axis->parameters[axes::software_limit_positive],
-                                                                              axis->parameters[axes::software_limit_negative]};
-        }
-        return Reading::valid();
-    }
-    void clear() noexcept { LimitValues = {}; }
 };
 
 }  // namespace taktwerk::fb

@@ -35,6 +35,7 @@ public:
         check_bus();
         check_serial(config_, errors_);
         check_axes(config_, errors_);
+        for (auto& error : axes::check(config_.axis_groups, axes_)) errors_.push_back(std::move(error));
         check_modbus(config_, errors_);
         check_hot_connect(config_, errors_);
         check_io();

@@ -26,6 +26,10 @@ Verdict HandMotion::stop(std::size_t axis) noexcept {
     const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
     const auto owner = body_.axes[axis].view().owner;
     axes_[axis].jog = 0;
+    if (auto* group = body_.axis_groups.leader_of(ref)) {  // on the path: a member that stops alone would leave it
+        group->halt();
+        return {};
+    }
     switch (body_.axes[axis].view().state) {
         case AxisState::Disabled:
         case AxisState::Stopping:

@@ -60,6 +60,12 @@ void MachineBody::raise(const AlarmFact& fact, std::span<const AlarmInfo> table)
     if (const auto* info = find_alarm(table, fact.id)) log.raise(fact, info->reaction, info->reset, now);
 }
 
+void MachineBody::shut_down(std::size_t axis) noexcept {
+    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
+    if (auto* group = axis_groups.leader_of(ref)) group->shut_down(ref);
+    else axes[axis].shut_down();
+}
+
 void MachineBody::raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a, double b) noexcept {
     raise({id(alarm), source, index, a, b}, machine_alarms);
 }

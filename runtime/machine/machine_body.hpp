@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "axes/axis/axis.hpp"
+#include "axes/group/axis_groups.hpp"
 #include "core/recorder.hpp"
 #include "ecat/master.hpp"
 #include "runtime/alarms.hpp"
@@ -30,6 +31,8 @@ struct MachineBody {
     void raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a = 0, double b = 0) noexcept;
     /// `table`: of the floor that the fact comes from. Real-time safe.
     void raise(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept;
+    /// Axis::shut_down; one that its group moves comes to rest on the path first. Real-time safe.
+    void shut_down(std::size_t axis) noexcept;
 
     const MachineConfig config;
     const ecat::BusConfig bus_config;  // config.bus, and what the axes need of the bus beyond it
@@ -40,6 +43,7 @@ struct MachineBody {
     axes::MotionTables tables;          // declared by the programs
     std::vector<axes::AxisView> views;  // where the axes keep theirs; what programs read
     std::vector<axes::Axis> axes;       // built by MachineDrives
+    axes::AxisGroups axis_groups;       // likewise
     WatchedRequests requests;           // of operators; of programs through theirs
     AlarmLog log;
     Recorder* recorder = nullptr;  // of what the cycle takes, and what it makes of it; nullptr: nobody records

@@ -150,6 +150,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     done(Step::update);
 
     supervisor.step(tick);
+    body.axis_groups.update(now);
     done(Step::supervise);
 
     body.requests.speak_for(no_program, now);
@@ -160,6 +161,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     drives.hold_brake_outputs();
     done(Step::tasks);
 
+    body.axis_groups.plan(now, body.config.cycle);
     axes::plan_axes(body.axes, now, body.config.cycle);
     body.requests.end_of_cycle(now, body.emergency || body.shutting_down, programs.programs());
     done(Step::plan);

@@ -92,6 +92,7 @@ void MachineDrives::build_axes() {
                 brakes_.push_back({i, static_cast<std::size_t>(output)});
         body_.axes.emplace_back(axis, *ports_[i], config.cycle, static_cast<std::uint16_t>(i), &body_.views[i]);
     }
+    body_.axis_groups.build(config.axis_groups, body_.axes, config.cycle);
     body_.requests = WatchedRequests{body_.axes};
 }
 

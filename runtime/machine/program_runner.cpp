@@ -42,7 +42,7 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
       objects_(body.config.programs.size(), body.bus.slave_count()),
       times_(host_.tasks().size()) {
     for (std::size_t p = 0; p < body.config.programs.size(); ++p)
-        programs_.emplace_back(body.requests, claims_, static_cast<std::uint16_t>(p));
+        programs_.emplace_back(body.requests, body.axis_groups, claims_, static_cast<std::uint16_t>(p));
     build_tasks();
     for (const auto& variable : host_.variables()) variable_values_.push_back(ProgramHost::read(variable));
 }
@@ -176,7 +176,8 @@ void ProgramRunner::stop(std::size_t program, ProgramState state) noexcept {
         if (moves) claims.motion = no_program;
         auto& axis = body_.axes[i];
         if (axis.view().owner != axes::Owner::program) continue;
-        if (powers || !others) axis.shut_down();  // its power wishes end with it: the axis ramps down, then its power goes off
+        if (moves) let_go_of_group(i);
+        if (powers || !others) body_.shut_down(i);  // its power wishes end with it: the axis ramps down, then its power goes off
         else if (moves) end_motion(i);
     }
     release_outputs_of(program, others);
@@ -189,6 +190,11 @@ void ProgramRunner::release_outputs_of(std::size_t program, bool others_run) noe
         if (!driven) body_.io.make_safe(output);
     }
     if (!others_run) body_.io.make_safe();
+}
+
+void ProgramRunner::let_go_of_group(std::size_t axis) noexcept {
+    const auto group = body_.axis_groups.group_of(axes::AxisRef{static_cast<std::uint16_t>(axis)});
+    if (group.valid()) body_.axis_groups[group.index].let_go();
 }
 
 // The program that moved the axis is gone, the one that powers it is not.

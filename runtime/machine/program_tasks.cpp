@@ -20,6 +20,7 @@ void ProgramRunner::run_base_task(BaseTask& base, std::uint32_t missed_ticks) no
     context.cycle = base.scans++;
     context.axes = body_.views;
     context.requests = &record.requests;
+    context.groups = &record.groups;
     body_.requests.speak_for(static_cast<std::uint16_t>(task.program), body_.now);
     context.objects = &objects_.of(task.program);
     context.owner = axes::Owner::program;

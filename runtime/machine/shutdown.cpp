@@ -26,7 +26,7 @@ void Shutdown::begin() noexcept {
     desk_.drop_power();
     body_.io.release_forces();
     body_.io.make_safe();
-    for (auto& axis : body_.axes) axis.shut_down();
+    for (std::size_t i = 0; i < body_.axes.size(); ++i) body_.shut_down(i);
 }
 
 void Shutdown::step() noexcept {

@@ -39,6 +39,19 @@ public:
         unknown("program.unknown_axis", "axis", name, names, "axes");
         return {};
     }
+    axes::GroupRef axis_group(std::string_view name) override {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < config_.axis_groups.size(); ++i) {
+            const auto& group = config_.axis_groups[i];
+            if (group.name == name) {
+                for (const auto& member : group.members) (void)axis(member);  // it moves them
+                return {static_cast<std::uint16_t>(i)};
+            }
+            names.push_back(group.name);
+        }
+        unknown("program.unknown_axis_group", "group of axes", name, names, "axis_groups");
+        return {};
+    }
     DeviceRef device(std::string_view name) override {
         std::vector<std::string> names;
         const auto slaves = present_slaves(config_);

@@ -9,6 +9,7 @@
 #include "programs/api/program.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/tasks/fault_text.hpp"
+#include "runtime/tasks/program_groups.hpp"
 #include "runtime/tasks/program_requests.hpp"
 #include "runtime/tasks/task_watch.hpp"
 
@@ -67,7 +68,8 @@ private:
 };
 
 struct ProgramRecord {
-    ProgramRecord(axes::AxisRequests& axes, std::span<AxisClaims> claims, std::uint16_t program) : requests(axes, claims, program) {}
+    ProgramRecord(axes::AxisRequests& axes, axes::AxisGroups& of_axes, std::span<AxisClaims> claims, std::uint16_t program)
+        : requests(axes, claims, program), groups(of_axes, claims, program) {}
 
     [[nodiscard]] bool running() const noexcept { return state == ProgramState::running; }
     [[nodiscard]] bool start_pending() const noexcept {
@@ -83,6 +85,7 @@ struct ProgramRecord {
     FaultText fault;                     ///< the cycle's; handed over with stop_asked
     TaskContext::Undeclared undeclared;  ///< what it uses without having declared it; since its start
     ProgramRequests requests;
+    ProgramGroups groups;
     bool has_base_task = false;
 };
 

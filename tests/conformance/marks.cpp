@@ -59,8 +59,8 @@ std::string comments_of(const std::string& text) {
 
 }  // namespace
 
-std::vector<Mark> marks_of(const architecture::SourceFile& file) {
-    static const std::regex named(R"re(P1-(\d+)(?:\s*\.\.\s*(?:P1-)?(\d+))?)re");
+std::vector<Mark> marks_of(const architecture::SourceFile& file, const std::string& document) {
+    const std::regex named("\\b" + document + R"re(-(\d+)(?:\s*\.\.\s*(?:\w+-)?(\d+))?)re");
     const auto comments = lines_of(comments_of(file.text));
     const auto tests = tests_of(architecture::code_of(file.text, architecture::Literals::blank), comments);
     std::vector<Mark> marks;

@@ -18,7 +18,7 @@ struct Mark {
     std::size_t line = 0;  ///< 1-based
 };
 
-/// In the order of the file; the same clause twice for one test is one mark.
-[[nodiscard]] std::vector<Mark> marks_of(const architecture::SourceFile& file);
+/// In the order of the file; the same clause twice for one test is one mark. `document`: what stands before the number, "P1" or "G" (Part 4).
+[[nodiscard]] std::vector<Mark> marks_of(const architecture::SourceFile& file, const std::string& document = "P1");
 
 }  // namespace taktwerk::conformance

@@ -226,7 +226,8 @@ TEST(GroupMembers, ShuttingDownStopsOnTheWay) {
     ASSERT_EQ(rig.give(line({60, 80}, 100)).error, ErrorId::none);
     rig.run(300);
     rig.powered = {false, false};
-    rig.groups[0].shut_down();
+    rig.groups[0].shut_down({0});
+    rig.groups[0].shut_down({1});
     ASSERT_TRUE(rig.until([&] { return rig.axis(0).state == AxisState::Disabled && rig.axis(1).state == AxisState::Disabled; }, 500));
     EXPECT_LE(rig.deviation({0, 0}, {60, 80}, from), 1e-9 * 100);
     EXPECT_EQ(rig.view().state, GroupStandby);

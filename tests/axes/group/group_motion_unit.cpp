@@ -9,7 +9,7 @@ namespace {
 
 using enum GroupState;
 
-// G-013, G-022, G-033, G-045 of one move. The way is 50 u (30, 40 in the axes) at 50 u/s: 30 and 40 u/s.
+// G-012, G-013, G-033 of one move. The way is 50 u (30, 40 in the axes) at 50 u/s: 30 and 40 u/s.
 TEST(GroupMotion, ALineInTheAxesIsStraightAndAllMembersAreSynchronized) {
     GroupRig rig(3);
     rig.enable();
@@ -78,7 +78,7 @@ TEST(GroupMotion, TheSlowestMemberHoldsTheWayDown) {
     EXPECT_EQ(rig.axis(1).set_position, 40);
 }
 
-// G-047: the set-point stands at P1, exactly; the next one starts in the following cycle. G-036: a buffered distance counts from the end before.
+// G-047, G-061, G-062: the set-point stands at P1, exactly; the next one starts in the following cycle. G-036: a buffered distance counts from the end before.
 TEST(GroupMotion, BufferedMovesMeetAtTheirEnds) {
     GroupRig rig(2);
     rig.enable();
@@ -199,7 +199,32 @@ TEST(GroupMotion, AHaltKeepsGroupMovingUntilItStands) {
     EXPECT_EQ(rig.view().state, GroupStandby);
 }
 
-/// Where a run was, by the length of its way: the same whatever its speed was (G-071, O-4).
+// G-041: all axes begin and end together, and the places that they pass depend on start and target only.
+TEST(GroupMotion, ADirectMoveIsOneLineOfAllAxes) {
+    for (const double factor : {1.0, 0.2}) {
+        GroupRig rig(
+            {group_axis("x"), group_axis("y", {.velocity = 10, .acceleration = 50, .deceleration = 80, .jerk = 700}), group_axis("z")});
+        rig.enable();
+        const auto from = rig.path.size();
+        ASSERT_EQ(rig.set(Override{factor, 1, 1}), ErrorId::none);
+        const auto move = rig.give({.kind = GroupCommandKind::direct_absolute, .target = {20, -5, 1}});
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_NE(rig.axis(i).set_velocity, 0) << i;
+        int moving = 0;
+        ASSERT_TRUE(rig.until(
+            [&] {
+                const bool x = rig.axis(0).set_velocity != 0, y = rig.axis(1).set_velocity != 0, z = rig.axis(2).set_velocity != 0;
+                EXPECT_TRUE(x == y && y == z);
+                moving += x ? 1 : 0;
+                return rig.status(move.id) == CommandStatus::done;
+            },
+            20000));
+        EXPECT_GT(moving, 100);
+        EXPECT_LE(rig.deviation({0, 0, 0}, {20, -5, 1}, from), 1e-9 * 20);
+        EXPECT_EQ(rig.point()[1], -5);
+    }
+}
+
+// Where a run was, by the length of its way: the same whatever its speed was. G-071
 TEST(GroupMotion, OverrideNeverChangesTheWay) {
     for (const double factor : {0.03, 0.37, 1.0}) {
         GroupRig rig(2);
@@ -280,7 +305,7 @@ TEST(GroupMotion, AWaitHasItsPlaceBetweenMoves) {
     ASSERT_TRUE(rig.until([&] { return rig.status(last.id) == CommandStatus::done; }, 2000));
 }
 
-// G-066, G-067, G-069, O-4.
+// G-066, G-067, G-068, G-069.
 TEST(GroupMotion, AnInterruptedWayGoesOnFromWhereItStopped) {
     GroupRig rig(2);
     rig.enable();

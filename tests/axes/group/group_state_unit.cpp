@@ -1,4 +1,4 @@
-// The state table against the rules G-010, G-011 and G-018, transcribed by hand as a list of arrows; everything else must be forbidden.
+// The state table against our rules of the diagram, transcribed by hand as a list of arrows; everything else must be forbidden.
 
 #include "axes/group/group_state.hpp"
 
@@ -21,7 +21,7 @@ struct Arrow {
 
 // clang-format off
 constexpr std::array arrows{
-    // G-011: Disabled-(Enable)->Standby; enabling an enabled group changes nothing (decided); with a kept error it leads back to it (decided)
+    // Disabled-(Enable)->Standby; enabling an enabled group changes nothing (decided); with a kept error it leads back to it (decided)
     Arrow{GroupDisabled, E::enable, GroupStandby}, Arrow{GroupStandby, E::enable, GroupStandby}, Arrow{GroupHoming, E::enable, GroupHoming},
     Arrow{GroupMoving, E::enable, GroupMoving}, Arrow{GroupDisabled, E::enable_failed, GroupErrorStop},
     // any-(Disable)->Disabled

@@ -248,7 +248,7 @@ TEST(GroupBlocks, PowerIsALevelOverAllMembers) {
     EXPECT_EQ(plc.rig.view().state, axes::GroupState::GroupStandby) << "it changes no state";
 }
 
-// G-066, G-067 by their blocks.
+// G-027, G-066, G-067 by their blocks.
 TEST(GroupBlocks, AnInterruptedMoveKeepsBusyAndLosesActive) {
     EnabledPlc plc(2);
     MC_MoveLinearAbsolute move;
@@ -288,8 +288,17 @@ TEST(GroupBlocks, AnInterruptedMoveKeepsBusyAndLosesActive) {
     EXPECT_TRUE(go_on.Done);
     plc.scan();
     EXPECT_TRUE(move.Active);
+    const auto number = move.CommandID;
     ASSERT_TRUE(plc.until([&] { return move.Done; }, 3000));
     EXPECT_EQ(plc.rig.axis(1).set_position, 80);
+    MC_GroupReadCommandInfo late;
+    late.AxesGroup = plc.group;
+    late.Enable = true;
+    late.CommandID = number;
+    plc.program = [&](const MotionContext& ctx) { late(ctx); };
+    plc.scan();
+    EXPECT_NE(number.id, 0u);
+    EXPECT_EQ(late.ErrorID, ErrorId::unknown_command) << "it is over";
 }
 
 // What MC_GroupStop has interrupted before it stood shows as an error: the block has no CommandAborted.

@@ -1,0 +1,41 @@
+#pragma once
+// Groups of axes as one program's base tasks see them: what it moves is noted of the members, so that a program that ends takes the motion of
+// its groups with it. Real-time safe.
+
+#include <cstdint>
+#include <span>
+
+#include "axes/group/axis_groups.hpp"
+#include "runtime/tasks/program_requests.hpp"
+
+namespace taktwerk::runtime {
+
+class ProgramGroups final : public axes::GroupAccess {
+public:
+    ProgramGroups(axes::AxisGroups& groups, std::span<AxisClaims> claims, std::uint16_t program) noexcept
+        : groups_(groups), claims_(claims), program_(program) {}
+
+    [[nodiscard]] const axes::GroupView* view(axes::GroupRef group) const noexcept override { return groups_.view(group); }
+    axes::Submitted submit(axes::GroupRef group, const axes::GroupCommand& command, axes::Owner owner) noexcept override {
+        const auto answer = groups_.submit(group, command, owner);
+        if (answer.error == axes::ErrorId::none)
+            for (const auto axis : groups_.view(group)->members)
+                if (axis.valid()) claims_[axis.index].motion = program_;
+        return answer;
+    }
+    axes::ErrorId set(axes::GroupRef group, const axes::GroupSetting& setting, axes::Owner owner) noexcept override {
+        return groups_.set(group, setting, owner);
+    }
+    axes::ErrorId reset(axes::GroupRef group, axes::Owner owner) noexcept override { return groups_.reset(group, owner); }
+    void release_stop(axes::GroupRef group, axes::CommandId id, axes::Owner owner) noexcept override {
+        groups_.release_stop(group, id, owner);
+    }
+    [[nodiscard]] axes::GroupRef group_of(axes::AxisRef axis) const noexcept override { return groups_.group_of(axis); }
+
+private:
+    axes::AxisGroups& groups_;
+    std::span<AxisClaims> claims_;
+    std::uint16_t program_;
+};
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,273 @@
+// A program moves a group of axes over a whole machine: real frames, simulated drives, virtual time.
+
+#include "axes/planner/motion.hpp"
+#include "tests/runtime/test_program.hpp"
+
+namespace taktwerk::runtime {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace testing;
+using axes::AxisState;
+
+/// Powers, enables, then runs a triangle again and again; stops, halts and resets as it is told.
+class Draws : public Program {
+public:
+    axes::GroupRef group;
+    fb::MC_GroupPower power;
+    fb::MC_GroupEnable enable;
+    fb::MC_MoveLinearAbsolute first;
+    fb::MC_MoveLinearRelative second;
+    fb::MC_GroupStop stop;
+    fb::MC_GroupReset reset;
+    fb::MC_GroupReadStatus status;
+    fb::MC_GroupReadError error;
+    fb::MC_GroupReadActualPosition place;
+    bool stops = false, resets = false, goes = true, in_machine = false;
+    std::int64_t done = 0, aborted = 0, failed = 0, group_error = 0, state = 0;
+    double x = 0, y = 0;
+
+    void declare(Declaration& d) override {
+        group = d.axis_group("table");
+        d.block("first", first);
+        d.monitor("done", done);
+        d.monitor("aborted", aborted);
+        d.monitor("failed", failed);
+        d.monitor("group_error", group_error);
+        d.monitor("state", state);
+        d.monitor("x", x);
+        d.monitor("y", y);
+        d.monitor("stopped", stop.Done);
+        d.operator_switch("stops", stops);
+        d.operator_switch("resets", resets);
+        d.operator_switch("goes", goes);
+        d.task<&Draws::scan>("main");
+    }
+    void start() override {
+        first.Execute = second.Execute = enable.Execute = false;
+        stops = resets = false;
+    }
+    void scan(TaskContext& ctx) {
+        for (auto* any : {&power.AxesGroup, &enable.AxesGroup, &first.AxesGroup, &second.AxesGroup, &stop.AxesGroup, &reset.AxesGroup,
+                          &status.AxesGroup, &error.AxesGroup, &place.AxesGroup})
+            *any = group;
+        power.Enable = status.Enable = error.Enable = place.Enable = true;
+        power(ctx);
+        enable.Execute = power.Status;
+        enable(ctx);
+        status(ctx);
+        stop.Execute = stops;
+        stop(ctx);
+        reset.Execute = resets;
+        reset(ctx);
+        first(ctx);
+        if (first.Busy) second.Execute = true;
+        second(ctx);
+        const bool ready = status.GroupStandby && power.Status && goes && !stops;
+        if (ready && !first.Execute) {
+            first.CoordSystem = second.CoordSystem = in_machine ? fb::mcMCS : fb::mcACS;
+            first.Position.A.Axes = {60, 80, 30};
+            first.Position.C.Tcp = {.X = 60, .Y = 80, .Z = 30};
+            second.Distance.A.Axes = {-60, -80, -30};
+            second.Distance.C.Tcp = {.X = -60, .Y = -80, .Z = -30};
+            first.Velocity = second.Velocity = 200;
+            second.BufferMode = fb::mcBuffered;
+            first.Execute = true;
+        }
+        done += second.Done ? 1 : 0;
+        aborted += first.CommandAborted || second.CommandAborted ? 1 : 0;
+        failed += first.Error || second.Error ? 1 : 0;
+        if (second.Done || second.CommandAborted || second.Error) first.Execute = second.Execute = false;
+        error(ctx);
+        place(ctx);
+        group_error = error.GroupErrorID;
+        x = place.Position[0];
+        y = place.Position[1];
+        state = status.GroupDisabled    ? 0
+                : status.GroupStandby   ? 1
+                : status.GroupMoving    ? 3
+                : status.GroupStopping  ? 4
+                : status.GroupErrorStop ? 5
+                                        : 9;
+    }
+};
+class DrawsInMachine : public Draws {
+public:
+    DrawsInMachine() { in_machine = true; }
+};
+
+MachineConfig with_group(std::size_t axes, const ProgramEntry* (*entry)() = entry_of<Draws>,
+                         axes::GroupKinematics kinematics = axes::GroupKinematics::none) {
+    auto config = with_program(axes, entry);
+    axes::AxisGroupConfig group{.name = "table", .members = {}, .kinematics = kinematics};
+    for (auto& binding : config.axes) {
+        binding.axis.require_homed = false;
+        group.members.push_back(binding.axis.name);
+    }
+    config.axis_groups.push_back(group);
+    return config;
+}
+
+/// What must hold of the set-points in every cycle, whatever happens to the group, and the line that they have to be on.
+struct GroupWatch {
+    explicit GroupWatch(TestMachine& machine, std::size_t of) : m(machine), count(of), last(of) {
+        const auto before = m.runner->after_cycle;
+        m.runner->after_cycle = [this, before](Instant now) {
+            if (before) before(now);
+            look();
+        };
+    }
+    void look() {
+        if (m.machine->latest() == nullptr) return;  // before the first cycle
+        std::vector<axes::MotionState> now;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto& view = m.axis(i);
+            now.push_back({view.set_position, view.set_velocity, view.set_acceleration});
+        }
+        const double t = to_seconds(m.machine->config().cycle);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto& limits = m.machine->config().axes[i].axis.limits;
+            const bool moves = m.axis(i).active_kind == axes::CommandKind::group_motion;
+            if (moves && led) {
+                worst_velocity = std::max(worst_velocity, std::abs(now[i].velocity) / limits.velocity);
+                worst_jerk = std::max(worst_jerk, std::abs(now[i].acceleration - last[i].acceleration) / (limits.jerk * t));
+                worst_gap =
+                    std::max(worst_gap, std::abs(now[i].position - last[i].position - t * (now[i].velocity + last[i].velocity) / 2) /
+                                            (limits.jerk * t * t * t));
+            }
+        }
+        led = m.axis(0).active_kind == axes::CommandKind::group_motion;
+        if (led) {
+            ++cycles_led;
+            const double s = now[0].position / 60;
+            off = std::max(off, std::abs(now[1].position - 80 * s));
+            if (count > 2) off = std::max(off, std::abs(now[2].position - 30 * s));
+        }
+        last = now;
+    }
+    void expect_clean() const {
+        EXPECT_GT(cycles_led, 100u);
+        EXPECT_LE(off, 1e-9 * 100) << "off the line";
+        EXPECT_LE(worst_velocity, 1 + 1e-6);
+        EXPECT_LE(worst_jerk, 1 + 1e-3);
+        EXPECT_LE(worst_gap, 0.25 + 1e-3) << "position and velocity tell of two motions";
+    }
+    TestMachine& m;
+    std::size_t count;
+    std::vector<axes::MotionState> last;
+    bool led = false;
+    std::size_t cycles_led = 0;
+    double off = 0, worst_velocity = 0, worst_jerk = 0, worst_gap = 0;
+};
+
+void draw(std::size_t count, const ProgramEntry* (*entry)(), axes::GroupKinematics kinematics) {
+    TestMachine m(with_group(count, entry, kinematics));
+    GroupWatch watch(m, count);
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return variable(m, "done") >= 2; }, 60s)) << m.alarms();
+    EXPECT_EQ(variable(m, "failed"), 0);
+    EXPECT_EQ(m.alarms(), "");
+    watch.expect_clean();
+    m.expect_no_jump();
+}
+
+// G-033, G-036: two and three axes, over frames, there and back on one line.
+TEST(AxisGroupMachine, TwoAxesDrawALine) { draw(2, entry_of<Draws>, axes::GroupKinematics::none); }
+TEST(AxisGroupMachine, ThreeAxesDrawALine) { draw(3, entry_of<Draws>, axes::GroupKinematics::none); }
+TEST(AxisGroupMachine, ThreeAxesDrawALineInMachineCoordinates) { draw(3, entry_of<DrawsInMachine>, axes::GroupKinematics::identity); }
+
+// G-063: the stop of a program stays on the path.
+TEST(AxisGroupMachine, AStopOfTheProgramStaysOnTheLine) {
+    TestMachine m(with_group(3));
+    GroupWatch watch(m, 3);
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 20s));
+    const auto& names = m.machine->layout().variables;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i].name == "stops") {
+            EXPECT_EQ(m.command(OperatorAction::set_value, static_cast<std::uint16_t>(i), false, 1).answer, Answer::accepted);
+        }
+    ASSERT_TRUE(m.until([&] { return variable(m, "stopped") != 0; }, 3s));
+    EXPECT_EQ(variable(m, "state"), 4);
+    EXPECT_EQ(m.axis(0).set_velocity, 0);
+    EXPECT_GE(variable(m, "aborted"), 1);
+    watch.expect_clean();
+    m.expect_no_jump();
+}
+
+// A person's stop of one member halts the whole group on its path.
+TEST(AxisGroupMachine, APersonsStopOfOneAxisHaltsTheGroup) {
+    TestMachine m(with_group(3));
+    GroupWatch watch(m, 3);
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 20s));
+    (void)m.machine->request_stop(2);
+    m.run(300ms);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NE(m.axis(i).state, AxisState::ErrorStop) << i;
+    EXPECT_GE(variable(m, "aborted"), 1);
+    EXPECT_EQ(variable(m, "failed"), 0);
+    watch.expect_clean();
+}
+
+// The program ends in the middle of a line: on the path to rest, then power goes.
+TEST(AxisGroupMachine, TheEndOfTheProgramStopsOnTheLine) {
+    TestMachine m(with_group(3));
+    GroupWatch watch(m, 3);
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 20s));
+    OperatorCommand end;
+    end.action = OperatorAction::program_stop;
+    end.index = 0;
+    EXPECT_EQ(m.command(end).answer, Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).state == AxisState::Disabled; }, 3s));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(m.axis(i).state, AxisState::Disabled) << i;
+    EXPECT_EQ(m.axis(0).set_velocity, 0);
+    EXPECT_EQ(m.alarms(), "");
+    watch.expect_clean();
+    m.expect_no_jump();
+}
+
+// G-014: a member's drive loses its power in the middle of a line.
+TEST(AxisGroupMachine, AMembersFaultEndsInGroupErrorStopAndTheOthersStayOnTheLine) {
+    TestMachine m(with_group(3));
+    ASSERT_TRUE(m.up());
+    double worst = 0;
+    bool led = false;
+    m.runner->after_cycle = [&, before = m.runner->after_cycle](Instant now) {
+        before(now);
+        led = m.axis(0).active_kind == axes::CommandKind::group_motion;
+        if (led) worst = std::max(worst, std::abs(m.axis(1).set_position * 60 - m.axis(0).set_position * 80) / 100);
+    };
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 20s));
+    m.world.drive("z")->raise(0x2310);
+    ASSERT_TRUE(m.until([&] { return variable(m, "state") == 5; }, 200ms));
+    EXPECT_EQ(m.axis(2).state, AxisState::ErrorStop);
+    EXPECT_TRUE(led) << "x and y are still led";
+    ASSERT_TRUE(m.until([&] { return m.axis(0).state == AxisState::Standstill && m.axis(1).state == AxisState::Standstill; }, 3s));
+    EXPECT_LE(worst, 1e-9 * 100);
+    EXPECT_EQ(variable(m, "group_error"), m.axis(2).error);
+    EXPECT_GE(variable(m, "failed"), 1);
+    EXPECT_EQ(variable(m, "aborted"), 0);
+    m.expect_no_jump();
+}
+
+// What the machine lacks is said before anything runs, with the code of its cause.
+TEST(AxisGroupMachine, AGroupThatIsNotThereIsAnError) {
+    const auto codes = [](const MachineConfig& config) {
+        World world(config, Instant{} + 1s);
+        auto built = Machine::build(config, world.bus(), world.serial().lines(), world.modbus().exchanges());
+        std::string all;
+        if (const auto* errors = std::get_if<1>(&built))
+            for (const auto& error : *errors) all += error.code + " ";
+        return all;
+    };
+    auto config = with_group(2);
+    EXPECT_EQ(codes(config), "");
+    config.axis_groups[0].name = "tabel";
+    EXPECT_NE(codes(config).find("program.unknown_axis_group"), std::string::npos) << codes(config);
+    config.axis_groups[0].members.push_back("q");
+    EXPECT_NE(codes(config).find("group.unknown_axis"), std::string::npos) << codes(config);
+}
+
+}  // namespace
+}  // namespace taktwerk::runtime
