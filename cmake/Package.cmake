@@ -26,6 +26,7 @@ endif()
 # --- units ----------------------------------------------------------------------------------------------------------------------
 install(FILES "${package_files}/systemd/taktwerk@.service" DESTINATION lib/systemd/system COMPONENT runtime)
 install(FILES "${package_files}/systemd/taktwerk.rules" DESTINATION lib/udev/rules.d RENAME 60-taktwerk.rules COMPONENT runtime)
+install(FILES "${package_files}/systemd/bundle.conf" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk/systemd" COMPONENT runtime)
 install(FILES "${package_files}/systemd/taktwerk.sysusers" DESTINATION lib/sysusers.d RENAME taktwerk.conf COMPONENT runtime)
 install(FILES "${package_files}/systemd/taktwerk-hmi.service" DESTINATION lib/systemd/system COMPONENT hmi)
 install(FILES "${package_files}/systemd/taktwerk-hmi.sysusers" DESTINATION lib/sysusers.d RENAME taktwerk-hmi.conf COMPONENT hmi)

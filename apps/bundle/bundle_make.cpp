@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include <fmt/format.h>
@@ -114,6 +115,20 @@ Result<std::optional<SecretKey>> key_of(const MakeOptions& options) {
     return std::optional(std::move(key).value());
 }
 
+/// Only a bundle is written over: not the machine file, not the key.
+std::optional<Error> in_the_way(const std::string& out) {
+    std::error_code failed;
+    const auto there = fs::status(out, failed);
+    if (!fs::exists(there)) return std::nullopt;
+    constexpr std::string_view begin{"manifest.json\0", 14};
+    std::string first(begin.size(), '\0');
+    if (fs::is_regular_file(there)) std::ifstream(out, std::ios::binary).read(first.data(), static_cast<std::streamsize>(first.size()));
+    if (first == begin) return std::nullopt;
+    return Error{"bundle.in_the_way", out,
+                 fs::is_directory(there) ? "there is such a folder" : "there is something else of this name, which is no bundle",
+                 "take another name with -o, or remove it first"};
+}
+
 int make(const MakeOptions& options) {
     // First what is quick to refuse.
     if (!options.version.empty() && !is_bundle_version(options.version)) {
@@ -148,6 +163,7 @@ int make(const MakeOptions& options) {
     if (!text) return fail_bundle(text.error());
     if (auto ok = stands_alone(*text, manifest); !ok) return fail_bundle(ok.error());
     const auto out = options.out.empty() ? fmt::format("{}-{}.twb", manifest.name, manifest.version) : options.out;
+    if (const auto other = in_the_way(out)) return fail_bundle(*other);
     if (auto ok = replace_file(out, *text); !ok) return fail_bundle(ok.error());
 
     fmt::print("{}: machine '{}' {} for {}, {}, {}\n", out, manifest.name, manifest.version, manifest.target,

@@ -28,13 +28,17 @@ public:
     [[nodiscard]] bool reached() const noexcept { return reached_.load(std::memory_order_acquire); }
     /// Writes down that the machine has reached operation, if it has and that is not written yet. Waits for a disk. Errors: bundle.not_written.
     [[nodiscard]] Result<void> work();
-    /// The run has ended as somebody wanted; if that was before it had reached operation, the start does not count.
+    /// It will not reach operation for a reason that has nothing to do with the version, such as a file that was asked for on the command line.
+    void excuse() noexcept { excused_ = true; }
+    [[nodiscard]] bool excused() const noexcept { return excused_; }
+    /// The run has ended as somebody wanted, or is excused; if that was before it had reached operation, the start does not count.
     void ended_as_asked();
 
 private:
     runtime::BundleStart start_;
     std::atomic<bool> reached_{false};
     bool written_ = false;  ///< of the thread that calls work()
+    bool excused_ = false;  ///< before any thread and behind all
 };
 
 }  // namespace taktwerk::apps

@@ -1,6 +1,8 @@
 // taktwerk replay RECORDING [MACHINE]: a recording drives its machine again, without hardware, and what it makes of it is compared.
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -17,9 +19,14 @@
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/json_text.hpp"
+#include "apps/terminal/output_files.hpp"
 #include "apps/terminal/print_error.hpp"
+#include "axes/axis/alarms.hpp"
 #include "core/math.hpp"
 #include "core/nearest_name.hpp"
+#include "ecat/alarms.hpp"
+#include "modbus/tcp/alarms.hpp"
+#include "runtime/alarms.hpp"
 #include "runtime/recording_file/recording_file.hpp"
 #include "runtime/replay/recording_head.hpp"
 #include "runtime/replay/replay.hpp"
@@ -83,6 +90,20 @@ std::optional<Duration> time_of(const std::string& text) {
     return from_seconds(number * unit->second);
 }
 
+/// Neither a time nor the name of an alarm that there is.
+std::optional<Error> wrong_until(const std::string& text) {
+    if (text.empty() || time_of(text) || text.starts_with("program_alarm_") || text.starts_with("alarm_")) return std::nullopt;
+    std::vector<std::string> names;
+    for (const std::span<const AlarmInfo> table :
+         {std::span<const AlarmInfo>(machine_alarms), std::span<const AlarmInfo>(axes::axis_alarms),
+          std::span<const AlarmInfo>(ecat::bus_alarms), std::span<const AlarmInfo>(modbus::tcp::device_alarms)})
+        for (const auto& row : table) names.emplace_back(row.name);
+    if (std::ranges::find(names, text) != names.end()) return std::nullopt;
+    const auto near = nearest_name(text, names);
+    return Error{"usage.until", "--until", fmt::format("'{}' is no time such as 12.5s, and no alarm has this name", text),
+                 near.empty() ? "docs/reference/alarms.md has the names" : fmt::format("did you mean '{}'?", near)};
+}
+
 /// NAME=FILE or, of a machine with one program, FILE alone.
 std::optional<Error> put_program(MachineConfig& config, const std::string& given) {
     const auto equals = given.find('=');
@@ -117,8 +138,9 @@ public:
     }
 
     /// `end`: why the recording has no more; empty: that of its run, or the replay ended before.
-    int end(const Replay& replay, const std::string& end) const {
-        if (options_.json) return end_json(replay, end.empty());
+    /// `reached`: what `--until` asks for.
+    int end(const Replay& replay, const std::string& end, bool reached) const {
+        if (options_.json) return end_json(replay, end.empty(), reached);
         for (const auto& other : others_) fmt::print("{}\n", other);
         if (!end.empty()) fmt::print("the recording {}. What is there was replayed.\n", end);
         if (differences_.empty()) {
@@ -148,10 +170,11 @@ private:
         Instant start;
     };
 
-    int end_json(const Replay& replay, bool whole) const {
+    int end_json(const Replay& replay, bool whole, bool reached) const {
         std::string out =
             fmt::format("{{\"identical\":{},\"cycles\":{},\"cycles_before\":{},\"seconds\":{:.6f},\"complete\":{}", differences_.empty(),
                         replay.cycles(), replay.cycles_before(), to_seconds(replay.now() - replay.start()), whole);
+        if (!options_.until.empty()) out += fmt::format(",\"reached\":{}", reached);
         out += ",\"other\":[";
         for (std::size_t i = 0; i < others_.size(); ++i) out += (i > 0 ? "," : "") + json_text(others_[i]);
         out += "],\"differences\":[";
@@ -209,11 +232,25 @@ int replay(const ReplayOptions& options) {
     if (!loaded) return fail({loaded.error()}, {});
     auto& recording = **loaded;
     if (options.show) return show(recording);
+    if (const auto wrong = wrong_until(options.until)) {
+        print_error(*wrong);
+        return exit_usage;
+    }
     const auto* written = fact(recording, "machine_file");
     const auto file = !options.machine.empty() ? options.machine : written != nullptr ? *written : std::string{};
     if (file.empty())
         return fail({{"replay.not_of_a_machine", options.recording, "this recording does not say of which machine file it is",
                       "give the machine file behind it"}},
+                    {});
+    std::vector<std::string> inputs{options.recording, file};
+    for (const auto& program : options.programs) inputs.push_back(program.substr(program.find('=') + 1));
+    if (const auto other = output_in_the_way(std::array{OutputFile{"--trace", options.trace}}, inputs)) {
+        print_error(*other);
+        return exit_usage;
+    }
+    if (std::error_code failed; options.machine.empty() && !std::filesystem::exists(file, failed))
+        return fail({{"replay.no_machine", file, "the machine file does not stand any more where it was recorded",
+                      "give it behind the recording: taktwerk replay RECORDING MACHINE.yaml"}},
                     {});
     const auto* simulated = fact(recording, "simulated");
     const config::FilesRead files;
@@ -256,7 +293,7 @@ int replay(const ReplayOptions& options) {
     if (step == Replay::Step::malformed) return fail({*replay.error()}, {});
     if (trace)
         if (auto ok = trace->finish(); !ok) return fail({ok.error()}, {});
-    const int code = report.end(replay, step == Replay::Step::ended ? how_it_ends(recording.end()) : std::string{});
+    const int code = report.end(replay, step == Replay::Step::ended ? how_it_ends(recording.end()) : std::string{}, reached);
     if (!options.until.empty() && !options.json) {
         if (!reached)
             fmt::print("`--until {}` was not reached: the recording ends at {:.3f} s\n", options.until,

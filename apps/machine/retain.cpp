@@ -1,9 +1,11 @@
 // taktwerk retain: what a machine keeps over a time without power, looked at and changed while it does not run.
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +20,7 @@
 #include "apps/terminal/print_error.hpp"
 #include "apps/terminal/text_table.hpp"
 #include "core/nearest_name.hpp"
+#include "runtime/bundle/durable.hpp"
 #include "runtime/retain/retain_store.hpp"
 #include "runtime/retain/value_type.hpp"
 
@@ -27,6 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace runtime;
 
+constexpr std::size_t largest_export = std::size_t{64} << 20;  ///< bytes
+
 struct RetainOptions {
     std::string where, file;
     std::vector<std::string> names;
@@ -35,8 +40,13 @@ struct RetainOptions {
 
 /// The directory itself, or the one that a machine file names.
 Result<fs::path> directory_of(const std::string& where) {
-    if (fs::is_directory(where)) return fs::path(where);
-    if (!fs::exists(where))
+    std::error_code failed;
+    const auto what = fs::status(where, failed);
+    if (fs::is_directory(what)) return fs::path(where);
+    if (failed && what.type() != fs::file_type::not_found)
+        return Error{"retain.where", where, fmt::format("it cannot be looked at: {}", failed.message()),
+                     "do it as a user who may, or with sudo"};
+    if (!fs::exists(what))
         return Error{"retain.where", where, "there is no such directory or machine file",
                      "name the directory of `retain` (or of `run --retain`), or a machine file that has one"};
     auto read = read_machine_without_programs(where, false);
@@ -59,18 +69,21 @@ struct Opened {
     Kept kept;
 };
 
-/// `to_change`: nobody else may have it, and what is there must be whole.
+/// `to_change`: nobody else may have it, and what is there must be whole. Root acts as the directory's owner from here on: what is made there is the
+/// machine's, which could not open it otherwise.
 Result<Opened> open(const std::string& where, bool to_change) {
     auto directory = directory_of(where);
     if (!directory) return directory.error();
+    if (to_change)
+        if (auto ok = act_as_owner(*directory); !ok) return ok.error();
     Opened out{std::make_unique<RetainStore>(*directory), {}};
     if (to_change)
         if (auto in_use = out.store->lock()) return *in_use;
     auto loaded = out.store->load();
     for (const auto& damage : loaded.damage) print_warning(damage);
     if (loaded.lost)
-        return Error{"retain.lost", directory->string(), "both files are torn or altered: nothing can be read",
-                     "`taktwerk retain clear --all` removes them; `import` brings back what was exported"};
+        return Error{"retain.lost", directory->string(), "nothing of it can be read",
+                     "`taktwerk retain clear --all` removes it; `import` brings back what was exported"};
     out.kept = std::move(loaded.kept);
     return out;
 }
@@ -121,14 +134,34 @@ int show(const RetainOptions& options) {
     return exit_ok;
 }
 
+/// An earlier export, a pipe or nothing may be written over, and no machine file.
+std::optional<Error> not_to_be_replaced(const std::string& file) {
+    std::error_code failed;
+    const auto what = fs::status(file, failed);
+    if (!fs::exists(what) || fs::is_fifo(what) || fs::is_character_file(what)) return std::nullopt;
+    const auto there =
+        fs::is_regular_file(what) ? read_small_file(fs::canonical(file, failed), largest_export) : Result<std::string>(std::string{});
+    if (there && (there->empty() ? fs::is_regular_file(what) : there->find("\"taktwerk_retain\"") != std::string::npos))
+        return std::nullopt;
+    return Error{"retain.export", file, "there is something else already", "take another name, or remove it first"};
+}
+
 int export_to(const RetainOptions& options) {
     const auto opened = open(options.where, false);
     if (!opened) return fail(opened.error());
+    if (const auto other = not_to_be_replaced(options.file)) return fail(*other);
     const auto text = json_of(opened->kept).dump(2) + "\n";
-    std::ofstream out(options.file, std::ios::binary | std::ios::trunc);
-    out << text;
-    out.close();
-    if (!out) return fail({"retain.export", options.file, "the file cannot be written", "look at its folder and disk"});
+    std::error_code failed;
+    // Whole or not at all: who exports each night has the last one when the disk is full.
+    if (const auto what = fs::status(options.file, failed); fs::exists(what) && !fs::is_regular_file(what)) {
+        std::ofstream out(options.file, std::ios::binary);
+        out << text;
+        out.close();
+        if (!out) return fail({"retain.export", options.file, fmt::format("it cannot be written: {}", std::strerror(errno)), "look at it"});
+    } else {
+        const auto target = fs::exists(what) ? fs::canonical(options.file, failed) : fs::path(options.file);
+        if (auto ok = replace_file(target, text); !ok) return fail({"retain.export", options.file, ok.error().what, ok.error().remedy});
+    }
     fmt::print("{} values, {} parameters, {} blocks written to {}\n", opened->kept.values.size(), opened->kept.parameters.size(),
                opened->kept.blocks.size(), options.file);
     return exit_ok;
@@ -137,18 +170,33 @@ int export_to(const RetainOptions& options) {
 /// Those of `from` take the place of those of their name.
 template <class T>
 void merge(std::vector<T>& into, const std::vector<T>& from) {
+    std::map<std::string, std::size_t> places;
+    for (std::size_t i = 0; i < into.size(); ++i) places.emplace(into[i].name, i);
     for (const auto& one : from) {
-        const auto found = std::find_if(into.begin(), into.end(), [&](const T& other) { return other.name == one.name; });
-        if (found == into.end()) into.push_back(one);
-        else *found = one;
+        const auto found = places.find(one.name);
+        if (found == places.end()) into.push_back(one);
+        else into[found->second] = one;
     }
 }
 
+/// A file, or what comes through a pipe.
+Result<std::string> text_of_export(const std::string& file) {
+    std::error_code failed;
+    const auto what = fs::status(file, failed);
+    if (fs::is_fifo(what) || fs::is_character_file(what)) {
+        std::ifstream in(file, std::ios::binary);
+        std::string text(largest_export, '\0');
+        in.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(in.gcount()));
+        return text;
+    }
+    return read_small_file(fs::exists(what) ? fs::canonical(file, failed) : fs::path(file), largest_export);
+}
+
 int import_from(const RetainOptions& options) {
-    std::ifstream in(options.file, std::ios::binary);
-    if (!in) return fail({"retain.import", options.file, "the file cannot be read", "give what `taktwerk retain export` has written"});
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const auto read = kept_of_json(options.file, text);
+    const auto text = text_of_export(options.file);
+    if (!text) return fail({"retain.import", options.file, text.error().what, "give what `taktwerk retain export` has written"});
+    const auto read = kept_of_json(options.file, *text);
     if (!read) return fail(read.error());
     auto opened = open(options.where, true);
     if (!opened) return fail(opened.error());
@@ -203,6 +251,7 @@ int clear(const RetainOptions& options) {
         const auto directory = directory_of(options.where);
         if (!directory) return fail(directory.error());
         RetainStore store(*directory);
+        if (auto ok = act_as_owner(*directory); !ok) return fail(ok.error());
         if (auto in_use = store.lock()) return fail(*in_use);
         (void)store.load();
         if (const auto saved = store.save({}); !saved) return fail(saved.error());

@@ -1,7 +1,11 @@
 #include "apps/machine/retain_json.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,6 +21,23 @@ using namespace runtime;
 
 std::string text_at(const Json& one, const char* key) {
     return one.contains(key) && one[key].is_string() ? one[key].get<std::string>() : std::string{};
+}
+
+/// Starts without anybody who claimed it; 0 where nothing is said.
+std::string read_unclaimed(const Json& one, Unclaimed& unclaimed) {
+    const auto found = one.find("unclaimed");
+    if (found == one.end()) return {};
+    if (!found->is_number_unsigned() || found->get<std::uint64_t>() > std::numeric_limits<Unclaimed>::max())
+        return "\"unclaimed\" is no number of starts";
+    unclaimed = found->get<Unclaimed>();
+    return {};
+}
+
+/// What stands in the file of kept values as it is: a space or line break in it would be another entry.
+bool is_type_name(std::string_view text) {
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    });
 }
 
 /// Says where a file is wrong.
@@ -39,8 +60,16 @@ public:
             item.name = text_at(one, "name");
             if (item.name.empty()) return wrong(where, "it has no \"name\"");
             if (auto why = read(one, item); !why.empty()) return wrong(fmt::format("{} '{}'", where, item.name), why);
+            if (auto why = read_unclaimed(one, item.unclaimed); !why.empty()) return wrong(fmt::format("{} '{}'", where, item.name), why);
             out.push_back(std::move(item));
         }
+        std::vector<std::string_view> names;
+        for (const auto& item : out) names.push_back(item.name);
+        std::sort(names.begin(), names.end());
+        if (const auto twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
+            return wrong(key, fmt::format("'{}' stands in it twice", *twice));
+        if (out.size() > most_kept_items)
+            return wrong(key, fmt::format("it has {} entries, and at most {} are kept", out.size(), most_kept_items));
         return std::nullopt;
     }
 
@@ -62,17 +91,17 @@ std::string read_value(const Json& one, KeptValue& value) {
     value.type = *type;
     const auto bits = bits_of(*type, text_at(one, "value"));
     if (!bits) return fmt::format("\"value\" is no {} as text: '{}'", word(*type), text_at(one, "value"));
-    value.bits = *bits;
+    value.bits = bits_of(*type, text_of(*type, *bits)).value_or(*bits);  // of what is no number only that it is none
     return {};
 }
 
 std::string read_block(const Json& one, KeptBlock& block) {
     if (auto why = read_kind(one, block.kind); !why.empty()) return why;
     block.type = text_at(one, "type");
+    if (!is_type_name(block.type)) return "\"type\" is no name of a block's type";
     const auto layout = text_at(one, "layout"), bytes = text_at(one, "bytes");
-    if (std::from_chars(layout.data(), layout.data() + layout.size(), block.layout, 16).ptr != layout.data() + layout.size() ||
-        layout.empty())
-        return "\"layout\" is no hexadecimal number";
+    const auto [end, error] = std::from_chars(layout.data(), layout.data() + layout.size(), block.layout, 16);
+    if (layout.empty() || error != std::errc{} || end != layout.data() + layout.size()) return "\"layout\" is no hexadecimal number";
     auto read = bytes_of_hex(bytes);
     if (!read) return "\"bytes\" are no hexadecimal bytes of a block";
     block.bytes = std::move(*read);
@@ -134,7 +163,10 @@ Result<Kept> kept_of_json(const std::string& file, const std::string& text) {
     if (auto error = reading.list(all, "blocks", out.blocks, read_block)) return *error;
     if (auto error = reading.list(all, "parameters", out.parameters, read_parameter)) return *error;
     out.number = 1;
-    if (!kept_of(text_of(out))) return reading.wrong("the file", "a name stands in it twice, or is no name");
+    // The very same comes back, and nothing beside it.
+    const auto again = kept_of(text_of(out));
+    if (!again || again->values != out.values || again->blocks != out.blocks || again->parameters != out.parameters || !again->axes.empty())
+        return reading.wrong("the file", "it holds what cannot be kept");
     return out;
 }
 

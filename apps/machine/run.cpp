@@ -1,4 +1,5 @@
 // taktwerk run FILE: runs a machine, in real time or in virtual time, on its bus or simulated.
+#include <array>
 #include <memory>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/output_files.hpp"
 #include "apps/terminal/print_error.hpp"
 
 namespace taktwerk::apps {
@@ -22,6 +24,8 @@ Result<void> choose(RunOptions& options, config::LoadOptions& loading) {
     if (options.file.empty() == options.bundle.empty())
         return Error{"usage.run", "run", options.file.empty() ? "nothing is named that shall run" : "a file and a bundle are named",
                      "write `taktwerk run FILE` or `taktwerk run --bundle MACHINE`"};
+    const OutputFile outputs[] = {{"--trace", options.trace}, {"--pcap", options.pcap}, {"--record", options.record}};
+    if (auto other = output_in_the_way(outputs, std::array{options.file})) return *other;
     if (options.bundle.empty()) return {};
     auto begun = begin_start(BundleStore(bundle_root(options.root)), options.bundle, options.tries, this_host(), deed_now());
     if (!begun) return begun.error();
@@ -82,7 +86,9 @@ void add_run(CLI::App& app, Action& action) {
             auto loading = load_options(options->simulate || options->virtual_time);
             if (const auto chosen = choose(*options, loading); !chosen) {
                 print_error(chosen.error());
-                return static_cast<int>(chosen.error().code == "usage.run" ? exit_usage : exit_bad_file);
+                return static_cast<int>(chosen.error().code.starts_with("usage.")      ? exit_usage
+                                        : chosen.error().code == "bundle.machine_runs" ? exit_refused
+                                                                                       : exit_bad_file);
             }
             // Before programs: they are code of somebody else's, and begin when they are loaded.
             if (!options->virtual_time)
@@ -103,7 +109,7 @@ void add_run(CLI::App& app, Action& action) {
             auto facts = options->record.empty() ? Facts{} : facts_of(options->file, read, loaded->machine, simulated);
             const int code = options->virtual_time ? run_virtual(std::move(*loaded), *options, std::move(facts))
                                                    : run_real(std::move(*loaded), *options, std::move(facts));
-            if (options->from_bundle && code == exit_ok) options->from_bundle->ended_as_asked();
+            if (options->from_bundle && (code == exit_ok || options->from_bundle->excused())) options->from_bundle->ended_as_asked();
             return code;
         };
     });

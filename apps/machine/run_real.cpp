@@ -139,6 +139,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     bridge_options.views = std::move(views).value();
     auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
     if (!bridge) {
+        if (options.from_bundle && bridge.error().code == "socket.in_use") options.from_bundle->excuse();
         print_error(bridge.error());
         return exit_bad_file;
     }
@@ -231,6 +232,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         auto created = MachineRecording::create({options.record, {options.record_size, options.record_disk}}, machine, std::move(facts),
                                                 start, RecordedThreads::several);
         if (!created) {
+            if (options.from_bundle) options.from_bundle->excuse();
             print_error(created.error());
             return exit_bad_file;
         }
@@ -328,6 +330,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
                                                                            : "a client's shutdown"));
         print_error(error);
         // Who asked for the end got it: a service that is stopped while it starts has not failed. A run that was to last has.
+        if (time_up && options.from_bundle) options.from_bundle->excuse();
         const bool asked = error.code == RealtimeRunner::ended_early && !time_up;
         return asked ? exit_ok : exit_bus;
     }
@@ -377,6 +380,7 @@ int run_here(LoadedFile loaded, const RunOptions& options, Facts facts) {
     auto machine = build_machine(std::move(loaded.machine), transport, std::move(lines), std::move(exchanges));
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, calendar_minus_machine_time()); !ok) {
+        if (options.from_bundle) options.from_bundle->excuse();
         print_error(ok.error());
         return exit_bad_file;
     }
@@ -390,18 +394,19 @@ int run_real(LoadedFile loaded, RunOptions options, Facts facts) {
     const auto socket = loaded.hmi.socket.empty() ? hmi::make_socket_path(loaded.machine.name) : Result<std::string>{loaded.hmi.socket};
     if (!socket) return run_here(std::move(loaded), options, std::move(facts));  // says why itself
     auto mark = UnfinishedRun::begin(std::filesystem::path(*socket).replace_extension(".running"), boot_of_this_computer());
-    if (!mark && !options.quiet) print_error(mark.error());
-    if (mark && mark->before()) {
+    if (mark.trouble()) print_error(*mark.trouble());
+    if (mark.before()) {
         loaded.machine.start_mode = Mode::manual;
         options.run_before = fmt::format(
-            "the run before this one (process {}) did not end in order: this one begins in manual mode, and no program starts by "
+            "the run before this one{} did not end in order: this one begins in manual mode, and no program starts by "
             "itself. Look why it ended; then `taktwerk mode automatic` and `taktwerk start PROGRAM`",
-            mark->before()->process);
+            mark.before()->process != 0 ? fmt::format(" (process {})", mark.before()->process)
+                                        : std::string(", as far as its mark can be read,"));
     }
     const int code = run_here(std::move(loaded), options, std::move(facts));
     // Behind a crash a start that fails (the bus is not there yet) changes nothing: whoever tries again is no operator either.
     const bool ran = code == exit_ok || code == exit_alarm;
-    if (mark && (ran || !mark->before())) mark->ended();
+    if (ran || !mark.before()) mark.ended();
     return code;
 }
 

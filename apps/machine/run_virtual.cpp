@@ -27,6 +27,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     auto machine = build_machine(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, Duration{}); !ok) {
+        if (options.from_bundle) options.from_bundle->excuse();
         print_error(ok.error());
         return exit_bad_file;
     }
@@ -42,6 +43,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
         auto created = MachineRecording::create({options.record, {options.record_size, options.record_disk}}, *machine, std::move(facts),
                                                 clock.now(), RecordedThreads::one);
         if (!created) {
+            if (options.from_bundle) options.from_bundle->excuse();
             print_error(created.error());
             return exit_bad_file;
         }

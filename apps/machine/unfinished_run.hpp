@@ -14,17 +14,18 @@ namespace taktwerk::apps {
 class UnfinishedRun {
 public:
     struct Before {
-        long process = 0;  ///< of the run that did not end
+        long process = 0;  ///< of the run that did not end; 0: its mark does not say, and nobody knows how it ended
     };
 
     /// `path`: of the mark. `boot`: what names this start of the computer (boot_of_this_computer()).
-    /// Errors: run.mark (it cannot be written): a crash of this run will not be seen by the next.
-    static Result<UnfinishedRun> begin(std::string path, const std::string& boot);
+    static UnfinishedRun begin(std::string path, const std::string& boot);
     /// Leaves the mark where it is: a run that is destroyed without ended() has not ended in order.
     ~UnfinishedRun() = default;
 
     /// The run before this one, if it did not end in order.
     [[nodiscard]] const std::optional<Before>& before() const noexcept { return before_; }
+    /// run.mark: the mark of this one cannot be written, so that the next will not see its crash. What was there stays.
+    [[nodiscard]] const std::optional<Error>& trouble() const noexcept { return trouble_; }
     /// This one has.
     void ended() noexcept;
 
@@ -32,6 +33,7 @@ private:
     UnfinishedRun(std::string path, std::optional<Before> before) : path_(std::move(path)), before_(before) {}
     std::string path_;
     std::optional<Before> before_;
+    std::optional<Error> trouble_;
 };
 
 /// /proc/sys/kernel/random/boot_id; empty where it cannot be read.

@@ -91,13 +91,24 @@ Result<UnpackedBundle> runnable(const BundleStore& store, const std::string& mac
     return bundle;
 }
 
+/// In an activation before: what does not come up then is the machine and not this version.
+bool version_has_worked(const BundleStore& store, const std::string& machine, const std::vector<std::uint64_t>& numbers,
+                        const std::string& version) {
+    return std::any_of(numbers.begin(), numbers.end(), [&](std::uint64_t number) {
+        const auto one = read_activation(store, machine, number);
+        return one && one->version == version && one->worked;
+    });
+}
+
 Result<void> put_activation(const BundleStore& store, const std::string& machine, std::uint64_t number, const std::string& version,
-                            std::uint64_t before) {
+                            std::uint64_t before, bool worked) {
     auto aside = AsideFolder::make(store.bundles());
     if (!aside) return aside.error();
     if (auto ok = make_link(aside->path() / "bundle", fmt::format("../../versions/{}", version)); !ok) return ok;
     if (before != 0)
         if (auto ok = make_link(aside->path() / "before", fmt::format("../{}", before)); !ok) return ok;
+    if (worked)
+        if (auto ok = write_new_file(aside->path() / "worked", ""); !ok) return ok;
     if (auto ok = sync_folder(aside->path()); !ok) return ok;
     if (auto ok = make_folders(activations(store, machine)); !ok) return ok;
     return move_into_place(aside->path(), activation_folder(store, machine, number));
@@ -136,7 +147,9 @@ Result<Switched> activate(const BundleStore& store, const std::string& machine, 
     const auto number = numbers.empty() ? 1 : numbers.back() + 1;
     // The same version again: what lies before it stays the way back.
     const std::size_t behind = !chain.empty() && chain.front().version == version ? 1 : 0;
-    if (auto ok = put_activation(store, machine, number, version, behind < chain.size() ? chain[behind].number : 0); !ok) return ok.error();
+    const auto back = behind < chain.size() ? chain[behind].number : 0;
+    const bool worked = version_has_worked(store, machine, numbers, version);
+    if (auto ok = put_activation(store, machine, number, version, back, worked); !ok) return ok.error();
     Switched out{version_of(chain, 0), version, version_of(chain, behind)};
     if (auto ok = write_audit(store.folder(machine), deed, {"activate", out.from, out.to}); !ok) return ok.error();
     if (auto ok = replace_link(current_link(store, machine), current_text(number)); !ok) return ok.error();
@@ -168,6 +181,11 @@ Result<BundleStart> begin_start(const BundleStore& store, const std::string& mac
         return store.find(machine, "").error();
     const auto locked = store.lock();
     if (!locked) return locked.error();
+    // It would fail for that reason alone, be counted, and in the end take the version away under a machine that runs.
+    for (const auto& version : store.versions(machine))
+        if (in_use(store.version_folder(machine, version)))
+            return Error{"bundle.machine_runs", machine, fmt::format("it runs already, from version {}", version),
+                         "stop it first: `taktwerk shutdown`"};
     const auto chain = activations_of(store, machine);
     if (chain.empty()) return none_active(store, machine);
     std::optional<UnpackedBundle> chosen;
@@ -190,7 +208,7 @@ Result<BundleStart> begin_start(const BundleStore& store, const std::string& mac
         }
     }
     if (!chosen) return *first_trouble;
-    BundleStart out{std::move(*chosen), store.state(machine), {}, {}, OwnedFd{}};
+    BundleStart out{std::move(*chosen), store.state(machine), {}, {}, OwnedFd{}, false};
     const auto& version = out.bundle.manifest.version;
     if (place == chain.size()) {
         // None is any better: the nearest one that is whole, once more.
@@ -201,7 +219,8 @@ Result<BundleStart> begin_start(const BundleStore& store, const std::string& mac
                                            chain[place].failed_starts),
                                "look at the alarms and at the log; `taktwerk bundle activate` takes another version"});
     }
-    if (place > 0) {
+    out.fell_back = place > 0;
+    if (out.fell_back) {
         out.remarks.push_back(
             {"bundle.fell_back", machine, fmt::format("version {} is left and {} is active again: {}", chain.front().version, version, why),
              fmt::format("find out what is wrong with {}; `taktwerk bundle activate` takes it again", chain.front().version)});

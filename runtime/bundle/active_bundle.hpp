@@ -48,13 +48,15 @@ struct BundleStart {
     std::filesystem::path activation;  ///< for start_succeeded()
     std::vector<Error> remarks{};      ///< to be said loudly: another version than the active one was taken, and why
     OwnedFd held;                      ///< says that a machine runs from it
+    bool fell_back = false;            ///< the remarks say from what, and why
 };
 
 inline constexpr unsigned usual_tries = 3;
 
 /// Chooses, and counts the start. A version that is damaged, is not for this runtime, or has `tries` starts behind it of which none reached operation is
 /// left for the one before it, which then is the active one. One that has worked once is never left because it does not start: that is the
-/// machine's trouble and not the bundle's. Errors: bundle.unknown, bundle.none_active; of the active one where there is nothing to go back to.
+/// machine's trouble and not the bundle's. Errors: bundle.unknown, bundle.none_active; bundle.machine_runs (one runs from a version of this machine:
+/// nothing is counted); of the active one where there is nothing to go back to.
 [[nodiscard]] Result<BundleStart> begin_start(const BundleStore& store, const std::string& machine, unsigned tries, const Host& host,
                                               const Deed& deed);
 /// The machine has reached operation. Errors: bundle.not_written.

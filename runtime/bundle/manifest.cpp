@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -51,6 +52,10 @@ bool is_sum(std::string_view text) { return text.size() == 64 && all_hexadecimal
 bool is_abi(std::string_view text) { return text.size() == 16 && all_hexadecimal(text); }
 bool is_build_id(std::string_view text) { return text.size() <= 80 && all_hexadecimal(text); }
 bool is_kind(std::string_view text) { return std::find(kinds.begin(), kinds.end(), text) != kinds.end(); }
+/// Nobody could say whether "new" is before 0.1.0.
+bool is_runtime_version(std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789.") == std::string_view::npos && text.front() != '.';
+}
 bool is_word(std::string_view text) { return !text.empty() && printable(text); }
 bool is_time(std::string_view text) { return seconds_of(text) >= 0; }
 
@@ -95,7 +100,8 @@ bool version_before(std::string_view a, std::string_view b) {
         const auto next = [](std::string_view& rest) {
             const auto dot = std::min(rest.find('.'), rest.size());
             std::uint64_t number = 0;
-            std::from_chars(rest.data(), rest.data() + dot, number);
+            if (std::from_chars(rest.data(), rest.data() + dot, number).ec == std::errc::result_out_of_range)
+                number = std::numeric_limits<std::uint64_t>::max();
             rest.remove_prefix(std::min(dot + 1, rest.size()));
             return number;
         };
@@ -162,7 +168,7 @@ Result<Manifest> manifest_of(std::string_view text, const std::string& subject) 
     out.name = keys.text("name", is_bundle_name, "a machine's name");
     out.version = keys.text("version", is_bundle_version, "a version");
     out.created = seconds_of(keys.text("created", is_time, "a time such as 2026-11-26T05:12:00Z"));
-    out.minimum_runtime = keys.text("minimum_runtime", is_word, "a version");
+    out.minimum_runtime = keys.text("minimum_runtime", is_runtime_version, "a version of Taktwerk such as 0.1.0");
     out.target = keys.text("target", is_word, "a word");
     out.machine_file = keys.text("machine_file", is_packed_path, "a path in the bundle");
     for (const auto& program : keys.list("programs", most_packed_files)) out.programs.push_back(program_of(program, problem));

@@ -1,5 +1,7 @@
 #include "runtime/bundle/trust.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -11,6 +13,18 @@ namespace taktwerk::runtime {
 namespace {
 
 constexpr std::size_t longest_key_file = 4096;  ///< bytes; a key has about 120
+
+/// Who may write there may trust whom he likes. A group of one's own (its number is the user's, as Debian makes users) is nobody else.
+bool others_may_write(const std::filesystem::path& path) {
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0) return false;
+    return (info.st_mode & S_IWOTH) != 0 || ((info.st_mode & S_IWGRP) != 0 && info.st_gid != info.st_uid);
+}
+
+Error open_to_others(const std::filesystem::path& path) {
+    return {"trust.open", path.string(), "others than its owner may write it, and so decide whose bundles this computer takes",
+            fmt::format("look whether it is as you left it, then `chmod go-w {}`", path.string())};
+}
 
 std::string names_of(const std::vector<TrustedKey>& keys) {
     std::string out;
@@ -34,10 +48,19 @@ Result<Trust> Trust::read(const std::filesystem::path& folder) {
     std::vector<TrustedKey> keys;
     std::error_code failed;
     if (const auto there = fs::symlink_status(folder, failed); there.type() == fs::file_type::not_found) return Trust({}, folder.string());
+    if (others_may_write(folder)) return open_to_others(folder);
     fs::directory_iterator entry(folder, failed);
     for (const fs::directory_iterator end; !failed && entry != end; entry.increment(failed)) {
         const auto& path = entry->path();
-        if (path.extension() != public_key_ending) continue;
+        if (path.extension() != public_key_ending) {
+            const auto text = read_small_file(path, longest_key_file);
+            if (text && text->find("PUBLIC KEY-----") != std::string::npos && path.string().back() != '~')
+                return Error{"trust.unreadable", path.string(),
+                             "it holds a public key, and would be passed over: its name does not end in .pub",
+                             "call it NAME.pub, or take it away"};
+            continue;
+        }
+        if (others_may_write(path)) return open_to_others(path);
         const auto text = read_small_file(path, longest_key_file);
         if (!text)
             return Error{"trust.unreadable", path.string(), text.error().what, "let whoever installs bundles read it, or take it away"};

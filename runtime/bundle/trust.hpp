@@ -37,8 +37,8 @@ struct Signer {
 class Trust {
 public:
     explicit Trust(std::vector<TrustedKey> keys, std::string folder = {}) : keys_(std::move(keys)), folder_(std::move(folder)) {}
-    /// All NAME.pub of the folder; none where there is no such folder. One that cannot be read or is no key is an error: leaving it out could open the
-    /// door that it was to close. Errors: trust.unreadable, key.not_public.
+    /// All NAME.pub of the folder; none where there is no such folder. One that cannot be read or is no key, or a key with another ending, is an error: leaving
+    /// it out could open the door that it was to close. Errors: trust.unreadable, key.not_public; trust.open (others may write the folder or a key).
     [[nodiscard]] static Result<Trust> read(const std::filesystem::path& folder);
 
     /// Errors: bundle.unsigned, bundle.foreign (no trusted key has signed this manifest, or it was changed since).

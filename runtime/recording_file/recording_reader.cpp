@@ -27,6 +27,16 @@ Error corrupt(const std::string& name, std::uint64_t offset, std::string_view wh
                  "The file was damaged after it was written; use a backup"};
 }
 
+/// Its last bytes are those that a run writes at its end.
+template <class Part>
+bool has_end(const Part& part) {
+    std::array<std::byte, block_head + end_bytes> last{};
+    if (part.size < last.size() || !part.read(part.size - last.size(), last)) return false;
+    const std::span<const std::byte> bytes{last};
+    return load_le<std::uint32_t>(bytes) == end_bytes && load_le<std::uint32_t>(bytes, 4) == 0 &&
+           load_le<std::uint32_t>(bytes, 8) == block_sum(bytes, bytes.subspan(block_head));
+}
+
 /// 0: it says nothing of parts.
 std::size_t part_of(const RecordingInfo& info) {
     for (const auto& [name, value] : info.facts)
@@ -88,8 +98,11 @@ Result<void> RecordingReader::scan(std::size_t index, std::uint64_t at) {
         if (!part.read(at, head)) return corrupt(part.name, at, "nothing can be read");
         const std::span<const std::byte> start{head};
         const std::uint64_t length = load_le<std::uint32_t>(start), records = load_le<std::uint32_t>(start, 4);
-        if (length > part.size - at - block_head) return {};  // cut off
         if (length > most_packed_bytes) return corrupt(part.name, at, "a block that is too long");
+        if (length > part.size - at - block_head) {  // cut off, unless the end is there after all
+            if (has_end(part)) return corrupt(part.name, at, "wrong length of a block");
+            return {};
+        }
         packed_.resize(length);
         if (!part.read(at + block_head, packed_) || block_sum(start, packed_) != load_le<std::uint32_t>(start, 8))
             return corrupt(part.name, at, "wrong checksum of a block");

@@ -133,6 +133,45 @@ TEST_F(ReplayCommand, UntilATimeShowsTheMachineAsItStoodThen) {
     EXPECT_THAT(replay.text, HasSubstr(", 3.000"));
     EXPECT_THAT(replay.text, HasSubstr("following error"));
     EXPECT_THAT(command({"replay", path("run.twrec"), "--until", "drive_fault", "--quiet"}).text, HasSubstr("was not reached"));
+    EXPECT_THAT(command({"replay", path("run.twrec"), "--until", "drive_fault", "--quiet", "--json"}).text, HasSubstr("\"reached\":false"));
+    EXPECT_THAT(command({"replay", path("run.twrec"), "--until", "2s", "--quiet", "--json"}).text, HasSubstr("\"reached\":true"));
+    for (const char* wrong : {"-1s", "1 s", "1s2", "nan", "drive_faul", "drive fault"}) {
+        const auto refused = command({"replay", path("run.twrec"), "--until", wrong, "--quiet"});
+        EXPECT_EQ(refused.code, exit_usage) << wrong;
+        EXPECT_THAT(refused.text, HasSubstr("is no time such as 12.5s, and no alarm has this name")) << wrong;
+    }
+    EXPECT_THAT(command({"replay", path("run.twrec"), "--until", "drive_faul"}).text, HasSubstr("did you mean 'drive_fault'?"));
+}
+
+// What came once is not written over by a slip of the hand.
+TEST_F(ReplayCommand, NothingThatIsReadIsWrittenOver) {
+    record("demo.yaml", "2s");
+    const auto before = text_of(path("run.twrec"));
+    std::filesystem::create_symlink("run.twrec", path("the same"));
+    for (const char* name : {"run.twrec", "the same"}) {
+        const auto refused = command({"replay", path("run.twrec"), "--trace", path(name)});
+        EXPECT_EQ(refused.code, exit_usage) << name;
+        EXPECT_THAT(refused.text, HasSubstr("what is to be read")) << name;
+    }
+    EXPECT_EQ(text_of(path("run.twrec")), before);
+
+    const auto machine = altered("demo.yaml", "cycle: 1 ms", "cycle: 1 ms");
+    const auto text = text_of(machine);
+    for (const char* option : {"--record", "--trace", "--pcap"})
+        EXPECT_EQ(command({"run", machine, "--virtual-time", "--duration", "2s", option, machine}).code, exit_usage) << option;
+    EXPECT_EQ(text_of(machine), text);
+    const auto twice = command({"run", machine, "--virtual-time", "--duration", "2s", "--trace", path("out"), "--record", path("./out")});
+    EXPECT_EQ(twice.code, exit_usage);
+    EXPECT_THAT(twice.text, HasSubstr("is the file of --trace already"));
+}
+
+TEST_F(ReplayCommand, AMachineFileThatIsGoneIsAskedFor) {
+    const auto machine = altered("demo.yaml", "cycle: 1 ms", "cycle: 1 ms");
+    (void)command({"run", machine, "--virtual-time", "--duration", "2s", "--quiet", "--record", path("run.twrec")});
+    ASSERT_TRUE(std::filesystem::exists(path("run.twrec")));
+    std::filesystem::rename(machine, path("moved.yaml"));
+    EXPECT_THAT(command({"replay", path("run.twrec")}).text, HasSubstr("taktwerk replay RECORDING MACHINE.yaml"));
+    EXPECT_EQ(command({"replay", path("run.twrec"), path("moved.yaml"), "--quiet"}).code, exit_ok);
 }
 
 TEST_F(ReplayCommand, WhatIsNoRecordingSaysWhatIsWrong) {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "apps/terminal/exit_code.hpp"
@@ -137,6 +139,100 @@ TEST_F(RetainCommand, WrongFilesAreToldWithTheirPlaceAndChangeNothing) {
     }
     EXPECT_EQ(kept().values.size(), 4u);
     EXPECT_THAT(retain({"show", folder / "nothing"}).err, HasSubstr("no such directory or machine file"));
+}
+
+TEST_F(RetainCommand, HowLongItHasBeenNobodysTravelsAsWell) {
+    const auto file = folder / "kept.json";
+    ASSERT_EQ(retain({"export", where(), file}).code, exit_ok);
+    ASSERT_EQ(retain({"import", folder / "other", file}).code, exit_bad_file) << "there is no such directory";
+    fs::create_directory(folder / "other");
+    ASSERT_EQ(retain({"import", folder / "other", file}).code, exit_ok);
+    ASSERT_EQ(retain({"export", folder / "other", folder / "again.json"}).code, exit_ok);
+    auto before = retain({"show", where(), "--json"}).json(), after = retain({"show", folder / "other", "--json"}).json();
+    for (auto* one : {&before, &after}) one->erase("axes"), one->erase("number");
+    EXPECT_EQ(before, after);
+}
+
+// The file is lines of words: what a text could make of that.
+TEST_F(RetainCommand, NoTextOfAnImportBecomesAnotherEntry) {
+    const std::string axis = R"(A 0 0 00\naxis y homed 1 shift 12.5 counts -4711 at_rest 1 gearing 131072 1 1 10 0\nblock b retain B)";
+    const std::string value = R"(A 0 0 00\nvalue cell.pieces retain LINT 1 0\nblock b retain B)";
+    for (const auto& type : {axis, value, std::string("A B"), std::string()}) {
+        const auto file = folder / "wrong.json";
+        std::ofstream(file) << R"({"taktwerk_retain":1,"blocks":[{"name":"a.b","kind":"retain","type":")" << type
+                            << R"(","layout":"12","bytes":"00"}]})";
+        const auto refused = retain({"import", where(), file});
+        EXPECT_EQ(refused.code, exit_bad_file) << type;
+        EXPECT_THAT(refused.err, HasSubstr("\"type\" is no name")) << type;
+    }
+    EXPECT_EQ(kept().axes.size(), 1u) << "positions are never imported";
+    EXPECT_EQ(kept().values.size(), 4u);
+}
+
+TEST_F(RetainCommand, WhatCouldNotBeReadAgainIsNotImported) {
+    std::string values;
+    for (int i = 0; i < 16384; ++i)
+        values += (i > 0 ? "," : "") + (R"({"name":"many.v)" + std::to_string(i) + R"(","kind":"retain","type":"BOOL","value":"1"})");
+    const auto file = folder / "many.json";
+    std::ofstream(file) << R"({"taktwerk_retain":1,"values":[)" << values << "]}";
+    const auto refused = retain({"import", where(), file});
+    EXPECT_EQ(refused.code, exit_bad_file) << "those that are there already are too many beside them";
+    EXPECT_THAT(refused.err, HasSubstr("could not be read again"));
+    EXPECT_EQ(kept().values.size(), 4u);
+    std::ofstream(file) << R"({"taktwerk_retain":1,"values":[)" << values
+                        << R"(,{"name":"a.b","kind":"retain","type":"BOOL","value":"1"}]})";
+    EXPECT_THAT(retain({"import", where(), file}).err, HasSubstr("16385 entries"));
+}
+
+TEST_F(RetainCommand, ArgumentsInTheWrongOrderAreSaid) {
+    const auto file = (folder / "kept.json").string();
+    ASSERT_EQ(retain({"export", where(), file}).code, exit_ok);
+    const auto turned = retain({"import", file, where()});
+    EXPECT_EQ(turned.code, exit_bad_file);
+    EXPECT_THAT(turned.err, HasSubstr("it is no file"));
+    EXPECT_EQ(retain({"import", where(), folder}).code, exit_bad_file);
+    fs::create_symlink("loop", folder / "loop");
+    EXPECT_THAT(retain({"show", folder / "loop"}).err, HasSubstr("cannot be looked at"));
+}
+
+TEST_F(RetainCommand, AnExportReplacesAnEarlierOneAndNothingElse) {
+    const auto file = folder / "kept.json";
+    ASSERT_EQ(retain({"export", where(), file}).code, exit_ok);
+    EXPECT_EQ(retain({"export", where(), file}).code, exit_ok);
+    std::ofstream(folder / "cell.yaml") << "version: 1\n";
+    const auto refused = retain({"export", where(), folder / "cell.yaml"});
+    EXPECT_EQ(refused.code, exit_bad_file);
+    EXPECT_THAT(refused.err, HasSubstr("there is something else already"));
+    EXPECT_EQ(fs::file_size(folder / "cell.yaml"), 11u);
+    EXPECT_EQ(retain({"export", where(), folder}).code, exit_bad_file);
+    EXPECT_EQ(retain({"export", where(), "/dev/null"}).code, exit_ok) << "as ever";
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(RetainCommand, RootLeavesNothingThatTheMachineCannotOpen) {
+    if (::geteuid() != 0) GTEST_SKIP() << "needs root";
+    const auto file = (folder / "kept.json").string();
+    ASSERT_EQ(retain({"export", where(), file}).code, exit_ok);
+    fs::permissions(folder, fs::perms::others_exec | fs::perms::others_read, fs::perm_options::add);
+    for (const auto& entry : fs::directory_iterator(where())) fs::remove(entry);
+    ASSERT_EQ(::chown(where().c_str(), 65534, 65534), 0);
+    std::vector<std::string> words{"taktwerk", "retain", "import", where(), file};
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    std::fflush(stdout);
+    const auto child = ::fork();  // who works as the owner does so for good
+    if (child == 0) ::_exit(run(static_cast<int>(argv.size()), argv.data()));
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator(where())) {
+        struct stat info {};
+        ASSERT_EQ(::lstat(entry.path().c_str(), &info), 0);
+        EXPECT_EQ(info.st_uid, 65534u) << entry.path();
+        ++files;
+    }
+    EXPECT_EQ(files, 2u) << "what is kept, and the lock";
 }
 
 TEST_F(RetainCommand, WhatCannotBeReadIsSaidAndMayBeClearedAway) {

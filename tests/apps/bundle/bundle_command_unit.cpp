@@ -184,6 +184,21 @@ TEST_F(BundleCommand, AKeyIsNeverWrittenOver) {
     EXPECT_EQ(bundle({"keygen", "../plant"}).code, exit_usage);
 }
 
+// -o with the name beside it: the machine file, the key, a folder.
+TEST_F(BundleCommand, OnlyABundleIsWrittenOver) {
+    ASSERT_EQ(bundle({"keygen", "plant", "-o", path("")}).code, exit_ok);
+    ASSERT_EQ(make("1.0").code, exit_ok);
+    for (const char* name : {"cell/press.yaml", "plant.key"}) {
+        const auto before = text_of_file(path(name));
+        const auto refused = bundle({"make", path("cell/press.yaml"), "--version", "1.0", "--key", path("plant.key"), "-o", path(name)});
+        EXPECT_EQ(refused.code, exit_bad_file) << name;
+        EXPECT_THAT(refused.err, HasSubstr("which is no bundle")) << name;
+        EXPECT_EQ(text_of_file(path(name)), before) << name;
+    }
+    EXPECT_THAT(bundle({"make", path("cell/press.yaml"), "--version", "1.0", "-o", path("cell")}).err, HasSubstr("there is such a folder"));
+    EXPECT_EQ(bundle({"make", path("cell/press.yaml"), "--version", "1.1", "-o", path("1.0.twb")}).code, exit_ok);
+}
+
 TEST_F(BundleCommand, WordsThatAreWrongAreSaidToBe) {
     EXPECT_EQ(make("1 0").code, exit_usage);
     EXPECT_EQ(make("1.0", {"--key", path("tables/cut.csv")}).code, exit_bad_file);

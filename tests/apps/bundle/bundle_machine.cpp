@@ -111,6 +111,21 @@ TEST_F(BundleMachine, WhatItKeepsTravelsByNameFromVersionToVersionAndBack) {
     EXPECT_EQ(kept("count.scrap"), scrap) << "kept aside for the version that has it";
 }
 
+// A path that is wrong on the command line, a time that is too short: the version can do nothing for it.
+TEST_F(BundleMachine, AStartThatFailsByItsOwnOptionsDoesNotCount) {
+    write_machine("simulated", 1);
+    bring("1.0");
+    ASSERT_EQ(run({"--virtual-time", "--duration", "2s"}).first, exit_ok);
+    write_machine("simulated", 2);
+    bring("2.0");
+    for (const char* option : {"--trace", "--record", "--pcap"}) {
+        EXPECT_EQ(run({"--duration", "4s", option, path("no folder/file")}).first, exit_bad_file) << option;
+        EXPECT_EQ(run({"--virtual-time", "--duration", "2s", option, path("no folder/file")}).first, exit_bad_file) << option;
+    }
+    EXPECT_EQ(run({"--duration", "50ms", "--quiet"}).first, exit_bus);
+    EXPECT_THAT(bundle({"list"}).second, HasSubstr("active, not started yet"));
+}
+
 TEST_F(BundleMachine, AVersionThatDoesNotStartIsLeftAfterThreeStarts) {
     write_machine("simulated", 1);
     bring("1.0");

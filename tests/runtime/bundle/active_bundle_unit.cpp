@@ -191,6 +191,34 @@ TEST_F(Bundles, AVersionThatHasWorkedIsNotLeft) {
     for (int i = 0; i < 10; ++i) EXPECT_THAT(start(), ElementsAre("1.1"));
 }
 
+TEST_F(Bundles, AVersionThatHasWorkedIsNotLeftEitherWhenItIsTakenOnceMore) {
+    install("1.0"), install("1.1");
+    activate("1.0");
+    start();
+    ASSERT_TRUE(start_succeeded(last));
+    activate("1.1"), activate("1.0");
+    for (int i = 0; i < 10; ++i) EXPECT_THAT(start(), ElementsAre("1.0")) << i;
+    activate("1.1");
+    for (int i = 0; i < 3; ++i) EXPECT_THAT(start(), ElementsAre("1.1")) << "which never has";
+    EXPECT_THAT(start(), ElementsAre("1.0", "bundle.fell_back"));
+}
+
+// Somebody starts it by hand while the service brings it up: each of those starts would fail, and in the end the good version be left.
+TEST_F(Bundles, AStartOfAMachineThatRunsIsRefusedAndNotCounted) {
+    install("1.0"), install("1.1");
+    activate("1.0"), activate("1.1");
+    {
+        const auto running = begin_start(store, "cell", usual_tries, small_host(), joe);
+        ASSERT_TRUE(running);
+        for (int i = 0; i < 5; ++i) EXPECT_THAT(start(), ElementsAre("bundle.machine_runs"));
+        EXPECT_EQ(activations_of(store, "cell").front().failed_starts, 1u);
+        EXPECT_EQ(active(), "1.1");
+        activate("1.0");
+        EXPECT_THAT(start(), ElementsAre("bundle.machine_runs")) << "from another version";
+    }
+    EXPECT_THAT(start(), ElementsAre("1.0")) << "it has ended";
+}
+
 TEST_F(Bundles, AStartThatSomebodyEndedDoesNotCount) {
     install("1.0"), install("1.1");
     activate("1.0"), activate("1.1");

@@ -168,6 +168,36 @@ TEST(Trust, AKeyThatCannotBeReadIsNoOpenDoor) {
     EXPECT_EQ(Trust::read(folder.write("file", "")).error().code, "trust.unreadable") << "a file where the folder should be";
 }
 
+// Copied there as it was called elsewhere: without it this computer would go on taking every bundle.
+TEST(Trust, AKeyWithAnotherEndingIsNotPassedOver) {
+    for (const char* name : {"plant.PUB", "plant.pem", ".pub", "plant"}) {
+        const TemporaryFolder folder;
+        folder.write(name, new_key().public_half().pem());
+        const auto trust = Trust::read(folder.path());
+        ASSERT_FALSE(trust) << name;
+        EXPECT_EQ(trust.error().code, "trust.unreadable") << name;
+        EXPECT_THAT(trust.error().text(), ::testing::HasSubstr(".pub")) << name;
+    }
+}
+
+TEST(Trust, WhereOthersMayWriteNobodyIsTrusted) {
+    const TemporaryFolder folder;
+    const fs::path key = folder.write("plant.pub", new_key().public_half().pem());
+    ASSERT_TRUE(Trust::read(folder.path()));
+    const auto with = [&](const fs::path& path, fs::perms more) {
+        fs::permissions(path, more, fs::perm_options::add);
+        const auto trust = Trust::read(folder.path());
+        fs::permissions(path, more, fs::perm_options::remove);
+        return trust ? std::string("taken") : trust.error().code + " " + trust.error().subject;
+    };
+    EXPECT_EQ(with(folder.path(), fs::perms::others_write), "trust.open " + folder.path().string());
+    EXPECT_EQ(with(key, fs::perms::others_write), "trust.open " + key.string());
+    ASSERT_TRUE(Trust::read(folder.path())) << "as it was";
+    if (::geteuid() != 0) GTEST_SKIP() << "a group that is not one's own takes root";
+    ASSERT_EQ(::chown(folder.path().c_str(), 0, 65534), 0);
+    EXPECT_EQ(with(folder.path(), fs::perms::group_write), "trust.open " + folder.path().string());
+}
+
 TEST(Target, EachReasonIsItsOwn) {
     const auto code = [](const Manifest& manifest, const Host& host) {
         const auto ok = fits(manifest, host, "a.twb");

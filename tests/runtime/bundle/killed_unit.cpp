@@ -158,8 +158,10 @@ TEST_F(Killed, WhileItInstallsAVersionIsWholeOrNotThere) {
 
 TEST_F(Killed, WhileItFallsBackItStartsTheNextTime) {
     ASSERT_TRUE(store.install(new_file, nobody(), small_host()));
-    const auto good = begin_start(store, "cell", 1, small_host(), joe);
-    ASSERT_TRUE(good && start_succeeded(good->activation)) << "1.0 is one that works";
+    {
+        const auto good = begin_start(store, "cell", 1, small_host(), joe);
+        ASSERT_TRUE(good && start_succeeded(good->activation)) << "1.0 is one that works, and has ended";
+    }
     unsigned kills = 0;
     for (unsigned call = 1; call < many_calls; ++call) {
         ASSERT_TRUE(activate(store, "cell", "1.1", nobody(), small_host(), joe));

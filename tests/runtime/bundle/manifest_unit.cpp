@@ -106,6 +106,7 @@ TEST(Versions, AreOrderedByTheirNumbers) {
     EXPECT_FALSE(version_before("1.10", "1.9"));
     EXPECT_TRUE(version_before("0.1.0", "0.1.1"));
     EXPECT_TRUE(version_before("1", "1.0.1"));
+    EXPECT_TRUE(version_before("0.1.0", "99999999999999999999.1")) << "more than fits into 64 bits";
     EXPECT_FALSE(version_before("1.0", "1"));
     EXPECT_FALSE(version_before("1", "1.0"));
 }
