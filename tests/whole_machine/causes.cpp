@@ -24,15 +24,17 @@ consteval auto all_of(const std::array<Consequence, lengths>&... lists) {
 constexpr std::array stopped{C{"program_alarm_"}, C{"stopped_by_machine"}, C{"start_withdrawn"}};
 
 /// What is not exchanged any more: its drives stop by their own watchdogs, an emergency stop that cannot be read counts as pressed.
-constexpr std::array not_exchanged{C{"frames_lost"},    C{"drive_fault"},      C{"axis_feedback_lost"}, C{"emergency_stop"},
-                                   C{"program_waits"},  C{"slave_left_op"},    C{"slave_emergency"},    C{"dc_not_locked"},
-                                   C{"dc_out_of_sync"}, C{"reference_clock_lost"}};
+constexpr std::array not_exchanged{C{"frames_lost"},    C{"drive_fault"},          C{"axis_feedback_lost"}, C{"emergency_stop"},
+                                   C{"program_waits"},  C{"slave_left_op"},        C{"slave_emergency"},    C{"dc_not_locked"},
+                                   C{"dc_out_of_sync"}, C{"reference_clock_lost"}, C{"gantry_skew"},        C{"gantry_skew_warning"}};
 constexpr auto bus_lost = all_of(not_exchanged, stopped);
 
 /// A part of the bus is away; what stands behind it as well.
 constexpr auto slaves_lost =
     all_of(bus_lost, std::array{C{"slave_lost"}, C{"cable_broken"}, C{"slaves_missing"}, C{"station_address_lost"}, C{"drive_power_lost"},
-                                C{"cut_off_from_reference"}, C{"working_counter_wrong"}, C{"reference_lost"}, C{"cable_loses_link"}});
+                                C{"cut_off_from_reference"}, C{"working_counter_wrong"}, C{"reference_lost"}, C{"cable_loses_link"},
+                                C{"drive_mode_mismatch"},  // that it was in when it was lost
+                                C{"foreign_command"}});  // one that is back before it was missed is in INIT: nobody knows who put it there
 constexpr auto port_lost = all_of(slaves_lost, std::array{C{"link_down"}});
 constexpr auto counters = all_of(bus_lost, std::array{C{"working_counter_wrong"}});
 constexpr auto other_state = all_of(std::array{C{"foreign_command"}, C{"slave_left_op"}, C{"slave_emergency", here}, C{"drive_fault", here},
@@ -42,31 +44,34 @@ constexpr auto other_state = all_of(std::array{C{"foreign_command"}, C{"slave_le
 constexpr std::array mailbox{C{"mailbox_silent", here}, C{"drive_setup_refused", here}, C{"drive_homing_refused", here}};
 constexpr std::array reference{C{"reference_clock_lost"}, C{"dc_not_locked"}, C{"dc_out_of_sync"}};
 
-constexpr auto drive = all_of(std::array{C{"drive_fault", here}, C{"slave_emergency", here}, C{"drive_power_lost", here}, C{"enable_timeout", here},
-                                         C{"drive_homing_failed", here}, C{"homing_failed", here}, C{"reference_lost", here}},
+constexpr auto drive = all_of(std::array{C{"drive_fault", here}, C{"slave_emergency", here}, C{"drive_power_lost", here},
+                                         C{"enable_timeout", here}, C{"drive_homing_failed", here}, C{"homing_failed", here},
+                                         C{"reference_lost", here}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
                               stopped);
-constexpr auto held = all_of(std::array{C{"following_error", here}, C{"drive_fault", here}, C{"slave_emergency", here}, C{"drive_homing_failed", here},
-                                        C{"homing_failed", here}, C{"drive_homing_timeout", here}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
-                             stopped);
-constexpr auto line = all_of(std::array{C{"drive_silent"}, C{"drive_not_ready_on_line"}, C{"axis_feedback_lost", here}, C{"drive_fault", here},
-                                        C{"following_error", here}},
+constexpr auto held =
+    all_of(std::array{C{"following_error", here}, C{"drive_fault", here}, C{"slave_emergency", here}, C{"drive_homing_failed", here},
+                      C{"homing_failed", here}, C{"drive_homing_timeout", here}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
+           stopped);
+constexpr auto line = all_of(std::array{C{"drive_silent"}, C{"drive_not_ready_on_line"}, C{"axis_feedback_lost", here},
+                                        C{"drive_fault", here}, C{"following_error", here}},
                              stopped);
 constexpr auto thrown = all_of(std::array{C{"program_fault", here}}, stopped);
 constexpr std::array no_number{C{"output_no_number"}, C{"axis_of_two_programs"}};
-constexpr auto quarrel = all_of(std::array{C{"axis_of_two_programs", here}, C{"following_error", here}, C{"software_limit_reached", here}}, stopped);
+constexpr auto quarrel =
+    all_of(std::array{C{"axis_of_two_programs", here}, C{"following_error", here}, C{"software_limit_reached", here}}, stopped);
 constexpr auto pressed = all_of(std::array{C{"emergency_stop"}, C{"program_waits"}, C{"drive_homing_failed"}}, stopped);
 constexpr auto forced = all_of(std::array{C{"points_forced"}, C{"input_out_of_limits"}}, stopped);
 constexpr std::array late{C{"late_wakeups"}, C{"dc_not_locked"}, C{"dc_out_of_sync"}};
 /// The computer sends nothing for a while: the slaves do what they are there for.
 constexpr auto starved = all_of(bus_lost, late,
-                                std::array{C{"cycle_overrun"}, C{"starved_slave_left_op"}, C{"jog_lease_expired"}, C{"drive_silent"}, C{"task_overrun"},
-                                           C{"drive_not_ready_on_line"}, C{"working_counter_wrong"}, C{"slave_lost"}});
+                                std::array{C{"cycle_overrun"}, C{"starved_slave_left_op"}, C{"jog_lease_expired"}, C{"drive_silent"},
+                                           C{"task_overrun"}, C{"drive_not_ready_on_line"}, C{"working_counter_wrong"}, C{"slave_lost"}});
 constexpr std::array disk{C{"retain_not_written"}, C{"positions_outdated"}, C{"stopped_by_machine"}};
 
 /// An axis may be led anywhere by hand: to its limits, against a stop.
-constexpr auto by_hand = all_of(std::array{C{"jog_lease_expired", here}, C{"software_limit_reached", here}, C{"negative_limit_switch", here},
-                                           C{"positive_limit_switch", here}, C{"following_error", here}, C{"drive_fault", here},
-                                           C{"slave_emergency", here}, C{"drive_warning", here}},
+constexpr auto by_hand = all_of(std::array{C{"jog_lease_expired", here}, C{"software_limit_reached", here},
+                                           C{"negative_limit_switch", here}, C{"positive_limit_switch", here}, C{"following_error", here},
+                                           C{"drive_fault", here}, C{"slave_emergency", here}, C{"drive_warning", here}},
                                 stopped);
 constexpr auto homed = all_of(by_hand, std::array{C{"homing_failed", here}, C{"homing_timeout", here}, C{"drive_homing_failed", here},
                                                   C{"drive_homing_timeout", here}, C{"drive_homing_refused", here}});

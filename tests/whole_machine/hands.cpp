@@ -55,11 +55,13 @@ void Hands::set_something() {
             if (!layout.variables.empty()) {
                 const auto which = below(layout.variables.size());
                 const auto& info = layout.variables[which];
-                (void)rig_.submit(set_value, static_cast<std::uint16_t>(which), info.momentary && below(2) == 0, info.momentary ? 1 : std::floor(between(info.minimum, info.maximum)));
+                (void)rig_.submit(set_value, static_cast<std::uint16_t>(which), info.momentary && below(2) == 0,
+                                  info.momentary ? 1 : std::floor(between(info.minimum, info.maximum)));
             }
             return;
         case 2:
-            if (!layout.outputs.empty()) (void)rig_.submit(set_output, static_cast<std::uint16_t>(below(layout.outputs.size())), false, below(2));
+            if (!layout.outputs.empty())
+                (void)rig_.submit(set_output, static_cast<std::uint16_t>(below(layout.outputs.size())), false, below(2));
             return;
         default: (void)rig_.submit(below(2) == 0 ? take_control : release_control, static_cast<std::uint16_t>(below(layout.axes.size())));
     }
@@ -86,7 +88,8 @@ void Hands::reset_all() {
     rig_.run(5 * rig_.m.machine->config().cycle);
     (void)rig_.submit(acknowledge_alarms);
     (void)rig_.submit(reset);
-    for (std::size_t i = 0; i < rig_.m.machine->layout().axes.size(); ++i) (void)rig_.submit(release_control, static_cast<std::uint16_t>(i));
+    for (std::size_t i = 0; i < rig_.m.machine->layout().axes.size(); ++i)
+        (void)rig_.submit(release_control, static_cast<std::uint16_t>(i));
 }
 
 }  // namespace taktwerk::whole

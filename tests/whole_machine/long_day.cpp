@@ -89,7 +89,8 @@ void LongDay::bring_back() {
 void LongDay::automatic() {
     rig_.mode(runtime::Mode::automatic);
     rig_.run(100ms);
-    for (std::uint16_t i = 0; i < rig_.m.machine->layout().programs.size(); ++i) (void)rig_.submit(runtime::OperatorAction::program_start, i);
+    for (std::uint16_t i = 0; i < rig_.m.machine->layout().programs.size(); ++i)
+        (void)rig_.submit(runtime::OperatorAction::program_start, i);
     begin_work(rig_);
 }
 

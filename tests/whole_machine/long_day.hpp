@@ -35,7 +35,9 @@ public:
 
 private:
     [[nodiscard]] std::uint32_t below(std::size_t most) { return static_cast<std::uint32_t>(random_() % most); }
-    [[nodiscard]] Duration between(Duration low, Duration high) { return low + std::chrono::milliseconds{random_() % static_cast<std::uint64_t>((high - low) / 1ms + 1)}; }
+    [[nodiscard]] Duration between(Duration low, Duration high) {
+        return low + std::chrono::milliseconds{random_() % static_cast<std::uint64_t>((high - low) / 1ms + 1)};
+    }
     void one_cycle();
     void work(Duration time);
     void by_hand(Duration time);

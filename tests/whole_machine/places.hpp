@@ -24,6 +24,17 @@ public:
         for (std::size_t i = 0; i < bindings.size(); ++i) wrong += look(m, i, bindings[i], snapshot->axes[i], axes_[i]);
         return wrong;
     }
+    /// The computer, and with it the simulated world, was not looked at for so long: what searches a switch meanwhile has gone so much further before its
+    /// drive sees it.
+    void stalled(Duration length) {
+        for (auto& one : axes_) one.stalled += length;
+    }
+    /// Somebody has asked for a new reference: set where it stands, that takes a cycle and shows no Homing.
+    void asked_for_reference(std::size_t axis) {
+        if (axis >= axes_.size()) return;
+        axes_[axis].known = false;
+        axes_[axis].resting = -50;
+    }
     /// Times that an axis at rest was compared, and with its mechanics behind a homing: the positive control.
     [[nodiscard]] long compared() const { return compared_; }
     [[nodiscard]] long references() const { return references_; }
@@ -34,11 +45,14 @@ private:
         bool known = false;
         std::int64_t raw = 0;
         int resting = 0;
+        Duration stalled{};  ///< while it had no reference
     };
 
-    std::string look(runtime::testing::TestMachine& m, std::size_t i, const runtime::AxisBinding& binding, const axes::AxisView& view, One& one) {
+    std::string look(runtime::testing::TestMachine& m, std::size_t i, const runtime::AxisBinding& binding, const axes::AxisView& view,
+                     One& one) {
         auto* drive = m.world.drive(binding.axis.name);
-        if (drive == nullptr || !binding.profile || binding.encoder || !binding.follower.slave.empty() || !binding.load_input.empty()) return {};
+        if (drive == nullptr || !binding.profile || binding.encoder || !binding.follower.slave.empty() || !binding.load_input.empty())
+            return {};
         // A new reference, or none: what was known before counts no more.
         if (!view.homed || view.state == axes::AxisState::Homing || !view.online) {
             one.known = false;
@@ -48,31 +62,34 @@ private:
         const auto raw = m.told(i).actual_position;
         const bool rests = view.answered && raw == one.raw && std::abs(drive->plant().velocity()) < 1e-3;
         one.raw = raw;
-        one.resting = rests ? one.resting + 1 : 0;
+        one.resting = rests || one.resting < 0 ? one.resting + 1 : 0;
         if (one.resting < 20) return {};
         ++compared_;
         const double counts = binding.axis.gearing.counts_per_unit();
         const double offset = folded(view.actual_position - static_cast<double>(raw) / counts, view.modulo);
         std::string wrong;
         if (one.known && std::abs(folded(offset - one.offset, view.modulo)) * std::abs(counts) > 0.01)
-            wrong += fmt::format("axis {} shows {} u at {} counts, off by {} counts from where it was; ", binding.axis.name, view.actual_position, raw,
-                                 folded(offset - one.offset, view.modulo) * counts);
-        if (!one.known) wrong += compare_with_mechanics(binding, view, *drive, counts);
+            wrong += fmt::format("axis {} shows {} u at {} counts, off by {} counts from where it was; ", binding.axis.name,
+                                 view.actual_position, raw, folded(offset - one.offset, view.modulo) * counts);
+        if (!one.known) wrong += compare_with_mechanics(binding, view, *drive, counts, one.stalled);
+        one.stalled = {};
         one.known = true;
         one.offset = offset;
         return wrong;
     }
     /// The edge of the switch is where `home_from`..`home_to` begins or ends; the axis has found one of both at its latch velocity, within some cycles.
-    std::string compare_with_mechanics(const runtime::AxisBinding& binding, const axes::AxisView& view, const axes::sim::Cia402Axis& drive, double counts) {
+    std::string compare_with_mechanics(const runtime::AxisBinding& binding, const axes::AxisView& view, const axes::sim::Cia402Axis& drive,
+                                       double counts, Duration stalled) {
         const auto& homing = binding.axis.homing;
         const auto& simulation = binding.simulation;
         if (!simulation.home_from || !simulation.home_to || homing.kind == axes::HomingKind::set_here || view.modulo > 0) return {};
         ++references_;
         const double off = view.actual_position - drive.plant().position() / counts - homing.offset;
         const double near = std::min(std::abs(off + *simulation.home_from), std::abs(off + *simulation.home_to));
-        const double most = 0.05 + 0.01 * homing.latch_velocity;
+        const double most = 0.05 + 0.01 * homing.latch_velocity + homing.search_velocity * to_seconds(stalled);
         if (near <= most) return {};
-        return fmt::format("axis {} stands {} u from the edge of its home switch where it says 0 (at most {}); ", binding.axis.name, near, most);
+        return fmt::format("axis {} stands {} u from the edge of its home switch where it says 0 (at most {}); ", binding.axis.name, near,
+                           most);
     }
     static double folded(double way, double modulo) { return modulo > 0 ? way - modulo * std::round(way / modulo) : way; }
 

@@ -73,15 +73,18 @@ bool power_and_move(Rig& rig) {
         const auto& info = layout.axes[i];
         const auto& view = rig.m.axis(i);
         const double way = away_from_ends(rig, i);
-        const double before = view.actual_position + static_cast<double>(view.turns) * view.modulo;
+        const double before = view.actual_position;
         (void)rig.submit(jog, i, true, way * info.jog_slow);
         for (int beat = 0; beat < 8; ++beat) {
             rig.run(50ms);
             (void)rig.submit(jog, i, false, way * info.jog_slow);
         }
-        const double after = rig.m.axis(i).actual_position + static_cast<double>(rig.m.axis(i).turns) * view.modulo;
+        const double after = rig.m.axis(i).actual_position, modulo = rig.m.axis(i).modulo;
         (void)rig.submit(jog, i, false, 0);
-        if (way * (after - before) <= 0) rig.problem(fmt::format("{} does not move by hand: from {} to {}; {}{}", info.name, before, after, states(rig), rig.standing()));
+        const double moved = modulo > 0 ? (after - before) - modulo * std::round((after - before) / modulo) : after - before;
+        if (way * moved <= 0)
+            rig.problem(
+                fmt::format("{} does not move by hand: from {} to {}; {}{}", info.name, before, after, states(rig), rig.standing()));
     }
     if (!rig.until(powered, 5s)) rig.problem("not every axis stands: " + states(rig) + rig.standing());
     return rig.problems.empty();
@@ -102,10 +105,12 @@ void begin_work(Rig& rig) {
 
 bool recover(Rig& rig, Hands& hands) {
     rig.mode(runtime::Mode::manual);
+    (void)rig.submit(runtime::OperatorAction::stop);  // it may have been manual before, with a move of somebody's under way
     // What stopped stands, and nothing begins by itself.
     const auto stands = [&] {
         const auto& axes = rig.m.state().axes;
-        return std::all_of(axes.begin(), axes.end(), [](const auto& axis) { return axis.set_velocity == 0 || axis.state == AxisState::Disabled; });
+        return std::all_of(axes.begin(), axes.end(),
+                           [](const auto& axis) { return axis.set_velocity == 0 || axis.state == AxisState::Disabled; });
     };
     if (!rig.until(stands, 15s)) rig.problem("in manual mode something moves on: " + states(rig));
     const auto end = rig.now() + 60s;

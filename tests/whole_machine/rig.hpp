@@ -70,7 +70,8 @@ public:
     // --- hands ----------------------------------------------------------------------------------------------------------------------
     /// Its number; 0: the inbox is full.
     std::uint64_t submit(runtime::OperatorCommand command);
-    std::uint64_t submit(runtime::OperatorAction action, std::uint16_t axis = 0xFFFF, bool flag = false, double value = 0, double value2 = 0);
+    std::uint64_t submit(runtime::OperatorAction action, std::uint16_t axis = 0xFFFF, bool flag = false, double value = 0,
+                         double value2 = 0);
     void mode(runtime::Mode mode);
     /// Of the newest command that was answered.
     [[nodiscard]] const runtime::CommandAnswer& answer() const { return last_answer_; }
@@ -89,13 +90,14 @@ public:
     [[nodiscard]] bool any_in_error();
     [[nodiscard]] std::string standing();  ///< alarms, in words
     [[nodiscard]] const Places& places() const { return places_; }
+    void stalled(Duration length) { places_.stalled(length); }
 
     PrivateDisk disk;
     runtime::testing::TestMachine m;
     std::vector<std::string> problems;
     std::deque<std::string> log;                    ///< the newest of what was done and what came of it
     std::map<std::string, long, std::less<>> seen;  ///< alarms by their names
-    Reaction strongest = Reaction::none;  ///< of all alarms since it was set
+    Reaction strongest = Reaction::none;            ///< of all alarms since it was set
     std::map<std::string, long, std::less<>> done;  ///< troubles by their names
     long commands = 0, answers = 0;
 
@@ -105,6 +107,7 @@ private:
     void look_at_answers();
     [[nodiscard]] bool explained(std::string_view alarm, const AlarmFact& fact);
     [[nodiscard]] bool stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact);
+    [[nodiscard]] bool hurried_on_slow_line(std::string_view alarm, const AlarmFact& fact) const;
     [[nodiscard]] bool is_at(const AlarmFact& fact, const std::string& at) const;
     void tell(std::string line);
 
@@ -114,7 +117,7 @@ private:
     std::deque<Happening> happenings_;
     std::size_t forgotten_ = 0;  // happenings that are long over
     using Known = std::tuple<AlarmId, AlarmSource, std::uint16_t, std::int64_t>;
-    std::vector<Known> known_, still_;  // alarms of the cycle before, and of this one
+    std::vector<Known> known_, still_;                   // alarms of the cycle before, and of this one
     std::map<std::uint64_t, std::uint64_t> unanswered_;  // by number: cycle in which it was given
     runtime::CommandAnswer last_answer_;
     std::uint64_t sequence_ = 0, cycles_ = 0;

@@ -18,14 +18,15 @@ int main(int count, char** words) {
     constexpr std::size_t most_growth = 512 * 1024;  // bytes, from the end of the first hour on
     const SystemClock clock;
     const auto begin = clock.now();
-    fmt::print("{}, {} h of virtual time, seed {}\n{:>8} {:>9} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9}\n", machine, hours, seed, "virtual", "real", "troubles",
-               "alarms", "commands", "places", "references", "heap");
+    fmt::print("{}, {} h of virtual time, seed {}\n{:>8} {:>9} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9}\n", machine, hours, seed, "virtual",
+               "real", "troubles", "alarms", "commands", "places", "references", "heap");
     LongDay day{machine, seed};
     bool grown = false;
     const auto every = hours >= 1 ? Duration{std::chrono::hours{1}} : from_seconds(hours * 3600 / 4);
     day.live(from_seconds(hours * 3600), every, [&](const LongDay::Hour& hour) {
-        fmt::print("{:>6.2f} h {:>7.0f} s {:>9} {:>9} {:>9} {:>11} {:>10} {:>6} kB\n", to_seconds(hour.at) / 3600, to_seconds(clock.now() - begin), hour.troubles,
-                   hour.alarms, hour.commands, hour.compared, hour.references, hour.heap / 1024);
+        fmt::print("{:>6.2f} h {:>7.0f} s {:>9} {:>9} {:>9} {:>11} {:>10} {:>6} kB\n", to_seconds(hour.at) / 3600,
+                   to_seconds(clock.now() - begin), hour.troubles, hour.alarms, hour.commands, hour.compared, hour.references,
+                   hour.heap / 1024);
         std::fflush(stdout);
         grown = grown || hour.heap > day.hours().front().heap + most_growth;
     });

@@ -31,7 +31,8 @@ bool Troublemaker::possible(Trouble trouble) const {
         case Source::host: return config.bus.slaves.size() > 0;
         case Source::files: return trouble == Trouble::folder_gone || trouble == Trouble::bits_flipped || PrivateDisk::possible();
         case Source::drives:
-            return std::any_of(config.axes.begin(), config.axes.end(), [&](const auto& one) { return rig_.m.world.drive(one.axis.name) != nullptr; });
+            return std::any_of(config.axes.begin(), config.axes.end(),
+                               [&](const auto& one) { return rig_.m.world.drive(one.axis.name) != nullptr; });
         case Source::operators: return trouble != Trouble::emergency_stop || !input_of_emergency_stop().empty();
         case Source::programs: return trouble != Trouble::takes_others_axis || config.programs.size() > 1;
     }
@@ -89,7 +90,9 @@ Duration Troublemaker::begin_on_bus(Trouble trouble, const std::string& at) {
             faults.delay = between(1200us, 5000us);
             faults.delay_answers = all;
             return between(8ms, 30ms);
-        case Trouble::counter_wrong: cable.working_counter_offset = below(2) != 0 ? -1 : static_cast<int>(1 + below(3)); return between(5ms, 20ms);
+        case Trouble::counter_wrong:
+            cable.working_counter_offset = below(2) != 0 ? -1 : static_cast<int>(1 + below(3));
+            return between(5ms, 20ms);
         case Trouble::slave_off: rig_.m.world.set_slave_power(at, false); return between(5ms, 800ms);
         case Trouble::cable_pulled: rig_.m.world.set_cable(at, false); return between(20ms, 800ms);
         case Trouble::link_down: faults.link_down = true; return between(20ms, 500ms);
@@ -163,6 +166,7 @@ Duration Troublemaker::begin_beside(Trouble trouble, const std::string& at) {
 
 /// The computer does nothing for so long; the world goes on.
 void Troublemaker::stall(Duration length) {
+    rig_.stalled(length);
     rig_.m.clock.advance(length);
     rig_.m.world.network().advance(rig_.now());
     rig_.m.world.apply_events(rig_.now());
@@ -170,7 +174,7 @@ void Troublemaker::stall(Duration length) {
     rig_.m.machine->cycle({now, now, static_cast<std::uint32_t>(length / rig_.m.machine->config().cycle)});
     rig_.m.machine->run_slow_tasks();
     rig_.m.machine->service(now);
-    rig_.m.runner->drain ? rig_.m.runner->drain() : void();
+    if (rig_.m.runner->drain) rig_.m.runner->drain();
     rig_.m.runner->after_cycle(now);
 }
 
@@ -185,7 +189,8 @@ void Troublemaker::by_hand(Trouble trouble) {
             return;
         case Trouble::stops_in_a_row:
             if (below(10) == 0) {
-                (void)rig_.m.machine->request_stop(below(2) != 0 ? 0xFFFF : static_cast<std::uint16_t>(below(rig_.m.machine->layout().axes.size())));
+                (void)rig_.m.machine->request_stop(below(2) != 0 ? 0xFFFF
+                                                                 : static_cast<std::uint16_t>(below(rig_.m.machine->layout().axes.size())));
                 rig_.happens(Deed::stop);
             }
             return;
@@ -201,7 +206,7 @@ void Troublemaker::by_hand(Trouble trouble) {
             rig_.m.machine->cycle({now - config.cycle / 2, now, 0});
             rig_.m.machine->run_slow_tasks();
             rig_.m.machine->service(now);
-            rig_.m.runner->drain ? rig_.m.runner->drain() : void();
+            if (rig_.m.runner->drain) rig_.m.runner->drain();
             rig_.m.runner->after_cycle(now);
             return;
         }

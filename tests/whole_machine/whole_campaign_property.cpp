@@ -1,4 +1,4 @@
-// The campaign over whole machines. 100 seeds in a test run, 5,000 with TAKTWERK_SOAK_FACTOR=50 (`./dev nightly`). A failure names its seed:
+// The campaign over whole machines. 100 seeds in a test run, 5,000 with TAKTWERK_SOAK_FACTOR=50 (`./dev nightly`: 5,000 whatever its factor). A failure names its seed:
 // TAKTWERK_WHOLE=SEED[:MACHINE[:TROUBLE]] runs that one alone and tells all that was done. TAKTWERK_WHOLE_FIRST=SEED begins there.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,14 @@
 #include <sstream>
 
 #include "tests/property_cases.hpp"
+#include "tests/whole_machine/documented.hpp"
 #include "tests/whole_machine/loading.hpp"
 #include "tests/whole_machine/whole_run.hpp"
 
 namespace taktwerk::whole {
 namespace {
+
+const std::string page = std::string{TAKTWERK_SOURCE_DIR} + "/docs/whole-machine-campaign.md";
 
 std::string title(const WholeRun& run) {
     std::string out = fmt::format("seed {}: {} while {}:", run.seed, run.machine, moment_names[static_cast<std::size_t>(run.moment)]);
@@ -30,21 +33,37 @@ TEST(WholeCampaign, EachRunEndsAsDocumented) {
         const auto run = run_whole(static_cast<std::uint32_t>(std::stoul(seed)), machine, trouble);
         fmt::print("{}\n{}", title(run), run.story);
         for (const auto& problem : run.problems) ADD_FAILURE() << problem;
+        EXPECT_EQ(judged(run), "");
         return;
     }
     const char* first = std::getenv("TAKTWERK_WHOLE_FIRST");
     const auto begin = first ? static_cast<std::uint32_t>(std::stoul(first)) : 1u;
     const auto runs = static_cast<std::uint32_t>(property_cases(100));
     long commands = 0;
+    AllCounted all;
     for (auto seed = begin; seed < begin + runs; ++seed) {
         const auto run = run_whole(seed);
         commands += run.commands;
-        if (run.problems.empty()) continue;
-        std::string all;
-        for (const auto& problem : run.problems) all += "\n  " + problem;
-        ADD_FAILURE() << title(run) << all << "\n again: TAKTWERK_WHOLE=" << seed << " build/dev/tests/whole_machine_property";
+        count(all, run);
+        auto problems = run.problems;
+        if (const auto other = judged(run); !other.empty()) problems.push_back(other);
+        if (problems.empty()) continue;
+        std::string said;
+        for (const auto& problem : problems) said += "\n  " + problem;
+        ADD_FAILURE() << title(run) << said << "\n again: TAKTWERK_WHOLE=" << seed << " build/dev/tests/whole_machine_property";
     }
     fmt::print("{} runs, {} commands\n", runs, commands);
+    if (std::getenv("TAKTWERK_REGENERATE") != nullptr) std::ofstream{page} << documented_page() << counted_page(all, runs, commands);
+}
+
+TEST(WholeCampaign, ThePageSaysWhatIsDocumented) {
+    if (std::getenv("TAKTWERK_REGENERATE") != nullptr) GTEST_SKIP();
+    std::ifstream file{page};
+    std::stringstream shown;
+    shown << file.rdbuf();
+    const auto text = shown.str();
+    EXPECT_EQ(text.substr(0, text.find(runs_heading)), documented_page())
+        << "TAKTWERK_REGENERATE=1 TAKTWERK_SOAK_FACTOR=50 build/dev/tests/whole_machine_property --gtest_filter='WholeCampaign*'";
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ private:
                 return rig_.problem(std::string(only) + " is not possible on this machine");
             }
         }
-        constexpr std::array moments{Moment::bringing_up, Moment::by_hand, Moment::by_hand, Moment::running,
+        constexpr std::array moments{Moment::bringing_up, Moment::by_hand, Moment::by_hand,    Moment::running,
                                      Moment::running,     Moment::running, Moment::recovering, Moment::ending};
         result_.moment = moments[below(moments.size())];
     }

@@ -308,7 +308,11 @@ private:
             breach("the drive is told a way of {} u at a set velocity of {} after {} u/s", told, b.velocity, a.velocity);
         const double way = b.position - a.position;
         // Before and after at rest, with the drive told nothing new: more than a rounding is other coordinates then, however little it is.
-        const bool rested = rests && a.velocity == 0 && a.acceleration == 0 && told_ && told == 0 && std::abs(way) > told_grain + grain;
+        const bool untouched = rests && a.velocity == 0 && a.acceleration == 0 && told_ && told == 0;
+        // So is less, where the actual position has changed by just that: a reference found again, a count beside the one before.
+        const bool alike_to_the_digit =
+            untouched && std::abs(way) > grain && std::abs(modulo_of(next.actual - last_.actual - way, next.modulo)) <= 4 * grain;
+        const bool rested = untouched && (std::abs(way) > told_grain + grain || alike_to_the_digit);
         const bool follows = std::abs(way - expected) <= left * rounding + grain && !rested;
         bool renumbered = false;
         double shown = next.actual - last_.actual;  // what the motor did, as far as anybody saw
@@ -322,8 +326,8 @@ private:
             const bool alike = rested && std::abs(shift) <= 2 * system.velocity * T
                                    ? std::abs(moved) <= std::abs(modulo_of(next.actual - last_.actual, next.modulo))
                                    : std::abs(moved) <= 2 * system.velocity * T + told_grain;
-            renumbered =
-                std::abs(shift) > told_grain && alike && (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain);
+            renumbered = (std::abs(shift) > told_grain || alike_to_the_digit) && alike &&
+                         (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain);
             // Not again and again: that is a view that stands still while the drive is led on.
             again_ = renumbered ? again_ + 1 : 0;
             if (!renumbered || again_ == 4)
