@@ -40,6 +40,7 @@ struct AlarmText {
     std::string manual{};  ///< of a drive's own alarm: its profile and the section of its manual, "sv33-e 5.4"
 };
 
+class BusLook;
 class ReplayedInbox;
 
 /// Who calls a recorded machine: one thread for everything (virtual time), or the cycle's thread for cycles, service_bus(), arm(), start_bus() and
@@ -156,6 +157,8 @@ public:
     /// Service side: parameters and services of an axis' drive, beside the cycle: read_parameter(), write_parameter(), start_service(),
     /// service_answer() and capabilities() alone are for callers from outside. nullptr: no such axis, or a virtual one.
     [[nodiscard]] axes::DrivePort* drive_port(std::size_t axis) noexcept;
+    /// Service side: how the slaves' ports stand, for whoever asks.
+    [[nodiscard]] BusLook& bus_look() noexcept;
     /// Service side: what a program threw when it stopped by itself; empty when it did not.
     [[nodiscard]] std::string program_fault(std::size_t program) const;
     [[nodiscard]] const ecat::Master& bus() const noexcept;

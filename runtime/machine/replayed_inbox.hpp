@@ -2,6 +2,8 @@
 // Where a recording goes in again at the places where the cycle takes what comes from outside: whoever replays a machine (runtime/replay/) puts in
 // before each cycle what it had. Frames come over its transport. Not real-time; between two cycles, on their thread.
 
+#include "runtime/machine/bus_look.hpp"
+#include "runtime/machine/drive_desk.hpp"
 #include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/serial_drives.hpp"
@@ -14,8 +16,15 @@ namespace taktwerk::runtime {
 class ReplayedInbox {
 public:
     ReplayedInbox(MachineBody& body, ProgramRunner& programs, OperatorDesk& desk, SerialDrives& serial, ModbusDevices& modbus,
-                  Supervisor& supervisor)
-        : body_(body), programs_(programs), desk_(desk), serial_(serial), modbus_(modbus), supervisor_(supervisor) {}
+                  Supervisor& supervisor, DriveDesk& asked, BusLook& look)
+        : body_(body),
+          programs_(programs),
+          desk_(desk),
+          serial_(serial),
+          modbus_(modbus),
+          supervisor_(supervisor),
+          asked_(asked),
+          look_(look) {}
 
     /// From here on nothing comes from where it usually does.
     void begin() noexcept { body_.replayed = true; }
@@ -34,6 +43,11 @@ public:
         supervisor_.replay(says);
         return true;
     }
+    [[nodiscard]] bool put(const AskedRecord& record) {
+        if (record.kind != AskedKind::ports) return asked_.ask_again(record);
+        look_.begin();
+        return true;
+    }
     [[nodiscard]] bool put(const HookRecord& record) { return programs_.replay_hook(record.program, record.stop); }
     [[nodiscard]] bool put(const SlowRecord& record) noexcept {
         return record.task < programs_.slow_task_count() && programs_.run_slow_task(record.task);
@@ -48,6 +62,8 @@ private:
     SerialDrives& serial_;
     ModbusDevices& modbus_;
     Supervisor& supervisor_;
+    DriveDesk& asked_;
+    BusLook& look_;
 };
 
 }  // namespace taktwerk::runtime

@@ -214,6 +214,7 @@ bool Replay::Impl::put(const RecordView& record) {
         case disk_channel: return into(read_disk(record.bytes));
         case hook_channel: return into(read_hook(record.bytes));
         case slow_channel: return into(read_slow(record.bytes));
+        case asked_channel: return into(read_asked(record.bytes));
         default: return true;  // what the machine makes of it
     }
 }

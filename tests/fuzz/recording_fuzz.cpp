@@ -10,6 +10,7 @@
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
 #include "runtime/compression/compression.hpp"
+#include "runtime/recording/asked_record.hpp"
 #include "runtime/recording/inbox_reader.hpp"
 #include "runtime/recording_file/recording_file.hpp"
 
@@ -102,6 +103,7 @@ void read_as_inbox(std::span<const std::byte> bytes) {
     same_again(bytes, read_wire(bytes), [](Recorder& r, const WireRecord& v) { record_wire(r, v.mac, v.ring); });
     same_again(bytes, read_hook(bytes), [&](Recorder& r, const HookRecord& v) { record_hook(r, at, v.program, v.stop); });
     same_again(bytes, read_slow(bytes), [&](Recorder& r, const SlowRecord& v) { record_slow(r, at, v.task); });
+    same_again(bytes, read_asked(bytes), [&](Recorder& r, const AskedRecord& v) { record_asked(r, at, v); });
     (void)read_hash(bytes);
     (void)read_link(bytes);
     (void)read_ring(bytes);
