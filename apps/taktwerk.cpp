@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
         "alarm, 9 could not end, 10 a replay differs");
     Action action;
     add_run(app, action);
+    add_record(app, action);
     add_replay(app, action);
     add_check(app, action);
     add_status(app, action);

@@ -15,6 +15,7 @@ int run(int argc, char** argv);
 
 // One line a sub-command; each lives in its own file.
 void add_run(CLI::App& app, Action& action);
+void add_record(CLI::App& app, Action& action);  ///< the run so far is kept
 void add_replay(CLI::App& app, Action& action);  ///< a recording of `run --record` again
 void add_check(CLI::App& app, Action& action);
 void add_sim(CLI::App& app, Action& action);

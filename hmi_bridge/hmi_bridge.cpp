@@ -69,6 +69,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
     requests_.set_about(std::move(options.about));
     requests_.set_log(std::move(options.log_tail));
     requests_.set_recorder(options.recorder);
+    requests_.set_run_memory(options.run_memory);
     requests_.set_views(std::move(options.views));
     JsonRequests::LcmTold lcm{config.lcm ? config.lcm_url : std::string{}, why_no_lcm(config, lcm_problem_), config.rate_hz, 0};
     if (bus_) lcm.run = std::max<std::int64_t>(options.wall_utime(), 1);

@@ -44,6 +44,7 @@ struct HmiOptions {
     DoorThread door = DoorThread::service;
     ViewAnswers views{};                          ///< the machine builder's own pages
     runtime::FlightRecorder* recorder = nullptr;  ///< recordings around alarms; outlives the bridge
+    runtime::RunMemory* run_memory = nullptr;     ///< the run so far; outlives the bridge
     JsonRequests::Simulate simulate{};            ///< hands on a simulated machine; empty: it is real
     JsonRequests::About about{};                  ///< what runs here, for "hello"
     std::shared_ptr<const LogTail> log_tail{};    ///< for "log"; may be null

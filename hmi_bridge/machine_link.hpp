@@ -6,6 +6,7 @@
 #include <string>
 
 #include "axes/port/drive_profile.hpp"
+#include "runtime/machine/bus_look.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/recording/signal_rows.hpp"
@@ -29,8 +30,10 @@ public:
     };
     /// Of an axis of the layout. Lives as long as the machine.
     [[nodiscard]] virtual Drive drive(std::uint16_t axis) = 0;
-    /// For diagnosis: its scripts may be asked to carry more. nullptr: there is none.
+    /// For diagnosis. nullptr: there is none.
     [[nodiscard]] virtual ecat::Master* bus() { return nullptr; }
+    /// How the ports of its slaves stand. nullptr where bus() is.
+    [[nodiscard]] virtual runtime::BusLook* bus_look() { return nullptr; }
     /// Samples of a measurement, oldest first; false: none is there.
     virtual bool next_measure_sample(axes::MeasureSample& out) {
         (void)out;

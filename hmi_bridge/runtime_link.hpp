@@ -30,6 +30,7 @@ public:
     }
     [[nodiscard]] const runtime::SignalRows* signals() const override { return &machine_.signals(); }
     [[nodiscard]] ecat::Master* bus() override { return &machine_.bus(); }
+    [[nodiscard]] runtime::BusLook* bus_look() override { return &machine_.bus_look(); }
     [[nodiscard]] runtime::MachineTimes times() const override { return machine_.times(); }
     bool next_measure_sample(axes::MeasureSample& out) override { return machine_.next_measure_sample(out); }
     [[nodiscard]] const axes::AxisConfig* axis_config(std::uint16_t axis) const override {

@@ -209,6 +209,9 @@ struct RecordingConfig {
     std::uint16_t files = 20;                    ///< so many are kept, the newest; 0: all
     Duration before = std::chrono::seconds{10};  ///< what a recording shows before its alarm ...
     Duration after = std::chrono::seconds{2};    ///< ... and behind it
+    bool replay = true;                          ///< the run up to there is kept as well, for `taktwerk replay`
+    std::uint32_t replay_memory = 64;            ///< MB of it in memory, then it goes to the disk
+    std::uint32_t replay_disk = 2000;            ///< MB of all of them there
 };
 
 struct MachineConfig {

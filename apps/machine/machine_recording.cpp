@@ -1,5 +1,6 @@
 #include "apps/machine/machine_recording.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "runtime/recording/inbox_record.hpp"
 #include "runtime/recording/outcome_record.hpp"
 #include "runtime/replay/recording_head.hpp"
+#include "runtime/tasks/shared_object_check.hpp"
 
 namespace taktwerk::apps {
 
@@ -37,6 +39,13 @@ std::string check_sum_of(const std::string& path) {
     return check_sum(crc, size);
 }
 
+/// taktwerk is large: what its linker has made of all of it does as well as a sum.
+std::string this_binary() {
+    const std::string self = "/proc/self/exe";
+    const auto id = runtime::build_id_of(self);
+    return id.empty() ? check_sum_of(self) : "build " + id;
+}
+
 /// The machine file may be called anything and stand anywhere; of the others the folder says what they are.
 std::string name_of(const fs::path& path, bool is_machine) {
     return is_machine ? std::string("of the machine") : (path.parent_path().filename() / path.filename()).string();
@@ -52,7 +61,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const std::string& mac
     };
     using namespace runtime::head_fact;
     add(version, "", sdk_version);
-    add(binary, "", check_sum_of("/proc/self/exe"));
+    add(binary, "", this_binary());
     std::error_code unknown;
     const auto absolute = fs::absolute(machine_file, unknown);
     add("machine_file", "", unknown ? machine_file : absolute.string());
@@ -66,19 +75,34 @@ std::vector<std::pair<std::string, std::string>> facts_of(const std::string& mac
     return facts;
 }
 
-MachineRecording::MachineRecording(runtime::RecordingWriter writer)
-    : recorder_(ring_bytes, Recorder::Policy::drop_newest), packer_(runtime::tick_channel), writer_(std::move(writer)) {}
+std::optional<MachineRecording::Memory> MachineRecording::memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch) {
+    const auto& recording = config.recording;
+    if (!recording.replay || recording.directory.empty() || recording.files == 0) return std::nullopt;
+    constexpr std::uint64_t megabyte = 1'000'000;
+    return Memory{{config.name, recording.directory, start, epoch, recording.after},
+                  {recording.replay_memory * megabyte, recording.replay_disk * megabyte, recording.files}};
+}
 
-Result<std::unique_ptr<MachineRecording>> MachineRecording::create(RecordedFile file, runtime::Machine& machine,
+MachineRecording::MachineRecording() : recorder_(ring_bytes, Recorder::Policy::drop_newest), packer_(runtime::tick_channel) {}
+
+Result<std::unique_ptr<MachineRecording>> MachineRecording::create(const Wanted& wanted, runtime::Machine& machine,
                                                                    std::vector<std::pair<std::string, std::string>> facts, Instant start,
                                                                    runtime::RecordedThreads threads) {
     auto info = runtime::recording_info(machine.config(), start, threads);
     info.facts.insert(info.facts.end(), std::make_move_iterator(facts.begin()), std::make_move_iterator(facts.end()));
-    auto writer = runtime::RecordingWriter::create(file.path, std::move(info), file.room);
-    if (!writer) return std::move(writer).error();
-    std::unique_ptr<MachineRecording> recording{new MachineRecording(std::move(writer).value())};
+    std::unique_ptr<MachineRecording> recording{new MachineRecording};
+    if (wanted.memory) {
+        auto opened = runtime::RunMemory::open(info, wanted.memory->place, wanted.memory->room);
+        if (!opened) return std::move(opened).error();
+        recording->memory_ = std::move(*opened);
+    }
+    if (!wanted.file.path.empty()) {
+        auto writer = runtime::RecordingWriter::create(wanted.file.path, std::move(info), wanted.file.room);
+        if (!writer) return std::move(writer).error();
+        recording->writer_ = std::move(*writer);
+    }
     for (const auto& kept : runtime::start_files(machine.config()))
-        recording->take({runtime::start_file_channel, start, start_file_record(kept)});
+        recording->take({runtime::start_file_channel, start, runtime::start_file_record(kept)});
     machine.record(recording->recorder_, threads);
     return recording;
 }
@@ -86,16 +110,19 @@ Result<std::unique_ptr<MachineRecording>> MachineRecording::create(RecordedFile 
 void MachineRecording::take(const RecordView& record) {
     if (packer_.records() == 0) block_began_ = record.time;
     packer_.add(record);
+    last_ = std::max(last_, record.time);
     if (packer_.full() || record.time - block_began_ >= block_time) take_block();
 }
 
 void MachineRecording::take_block() {
     const auto records = packer_.records();
     if (records == 0) return;
-    const runtime::PackedBlock block{packer_.take(), records};
-    if (broken_) return;
-    if (auto done = writer_.write(block); !done) broken_ = done.error();
-    if (broken_ && broken_->code == "recording.limit") (void)writer_.finish(runtime::RecordingEnd::limit, recorder_.dropped()).ok();
+    runtime::PackedBlock block{packer_.take(), records};
+    if (writer_ && !broken_) {
+        if (auto done = writer_->write(block); !done) broken_ = done.error();
+        if (broken_ && broken_->code == "recording.limit") (void)writer_->finish(runtime::RecordingEnd::limit, recorder_.dropped()).ok();
+    }
+    if (memory_) memory_->take(std::move(block), last_, recorder_.dropped());
 }
 
 std::optional<Error> MachineRecording::drain() {
@@ -107,8 +134,10 @@ std::optional<Error> MachineRecording::drain() {
 Result<void> MachineRecording::finish() {
     (void)drain();
     take_block();
+    if (!writer_) return {};
+    if (broken_ && broken_->code == "recording.limit") return {};  // as it was told to, and it was said
     if (broken_) return *broken_;
-    return writer_.finish(runtime::RecordingEnd::whole, recorder_.dropped());
+    return writer_->finish(runtime::RecordingEnd::whole, recorder_.dropped());
 }
 
 }  // namespace taktwerk::apps

@@ -1,5 +1,6 @@
 #pragma once
-// `taktwerk run --record FILE`: everything that a machine takes from outside, and what it makes of it, into a file that `taktwerk replay` reads.
+// Everything that a machine takes from outside, and what it makes of it, for `taktwerk replay`: into a file (`taktwerk run --record FILE`), and into
+// the memory of the run, of which a file is made behind an alarm.
 
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "core/time.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/recording_file/recording_file.hpp"
+#include "runtime/run_memory/run_memory.hpp"
 
 namespace taktwerk::apps {
 
@@ -27,22 +29,36 @@ struct RecordedFile {
 
 class MachineRecording {
 public:
+    /// The run in memory, kept behind alarms.
+    struct Memory {
+        runtime::RunMemory::Place place;
+        runtime::RunMemory::Room room;
+    };
+    struct Wanted {
+        RecordedFile file{};  ///< no path: none
+        std::optional<Memory> memory;
+    };
+    /// As the machine's `recording` says; `start`, `epoch`: as RunMemory::Place has them.
+    [[nodiscard]] static std::optional<Memory> memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch);
+
     /// Before the machine's first cycle; from here on it records. `facts`: facts_of(). `start`: machine time that people call 0.
-    /// Errors: recording.write.
-    [[nodiscard]] static Result<std::unique_ptr<MachineRecording>> create(RecordedFile file, runtime::Machine& machine,
+    /// Errors: recording.write, recording.directory.
+    [[nodiscard]] static Result<std::unique_ptr<MachineRecording>> create(const Wanted& wanted, runtime::Machine& machine,
                                                                           std::vector<std::pair<std::string, std::string>> facts,
                                                                           Instant start, runtime::RecordedThreads threads);
 
-    /// Writes what has come, about a second of the machine at a time. Gives what went wrong, once: from then on this file gets no more, and the
-    /// machine runs on.
+    /// Takes what has come, about a second of the machine at a time. Gives what went wrong with the file, once: from then on it gets no more, and
+    /// the machine runs on.
     std::optional<Error> drain();
-    /// The rest, and the end of the file. Gives the error of an earlier drain(), too.
+    /// The rest, and the end of the file. Gives the error of an earlier drain(), too. Before RunMemory::finish().
     [[nodiscard]] Result<void> finish();
     /// Records that did not fit; from the first of them on the recording cannot be replayed.
     [[nodiscard]] std::uint64_t lost() const noexcept { return recorder_.dropped(); }
+    /// nullptr: not wanted.
+    [[nodiscard]] runtime::RunMemory* memory() noexcept { return memory_.get(); }
 
 private:
-    explicit MachineRecording(runtime::RecordingWriter writer);
+    MachineRecording();
     void take(const RecordView& record);
     void take_block();
 
@@ -51,8 +67,9 @@ private:
 
     Recorder recorder_;
     runtime::RecordPacker packer_;
-    Instant block_began_{};
-    runtime::RecordingWriter writer_;
+    Instant block_began_{}, last_{};
+    std::optional<runtime::RecordingWriter> writer_;
+    std::unique_ptr<runtime::RunMemory> memory_;
     std::optional<Error> broken_;
 };
 

@@ -49,7 +49,7 @@ const std::string* fact(const RecordSource& recording, std::string_view name) { 
 std::string how_it_ends(RecordingEnd end) {
     switch (end) {
         case RecordingEnd::whole: return {};
-        case RecordingEnd::kept: return "kept while the machine ran on";
+        case RecordingEnd::kept: return "was kept while the machine ran on";
         case RecordingEnd::limit: return "ends where the room that it was given was used up (--record-disk)";
         case RecordingEnd::torn: return "has no end: the process that wrote it died, or its disk was full";
         case RecordingEnd::no_part: return "goes on in a part that is not beside it";
@@ -145,7 +145,8 @@ public:
         if (!end.empty()) fmt::print("the recording {}. What is there was replayed.\n", end);
         if (differences_.empty()) {
             fmt::print("identical: {} ({} before the machine was up), {:.3f} s: every output byte, every set-point and every frame\n",
-                       count_text(replay.cycles(), "cycle"), replay.cycles_before(), to_seconds(replay.now() - replay.start()));
+                       count_text(replay.cycles(), "cycle"), replay.cycles_before(),
+                       to_seconds(std::max(replay.now(), replay.start()) - replay.start()));
             return exit_ok;
         }
         if (informational_)

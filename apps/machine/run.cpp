@@ -106,7 +106,7 @@ void add_run(CLI::App& app, Action& action) {
             else if (recordings.empty() && !options->virtual_time) recordings = usual_recordings(loaded->machine);
             if (!options->history.empty()) loaded->hmi.history.directory = options->history;
             const bool simulated = options->simulate || options->virtual_time;
-            auto facts = options->record.empty() ? Facts{} : facts_of(options->file, read, loaded->machine, simulated);
+            auto facts = facts_of(options->file, read, loaded->machine, simulated);
             const int code = options->virtual_time ? run_virtual(std::move(*loaded), *options, std::move(facts))
                                                    : run_real(std::move(*loaded), *options, std::move(facts));
             if (options->from_bundle && (code == exit_ok || options->from_bundle->excused())) options->from_bundle->ended_as_asked();

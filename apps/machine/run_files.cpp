@@ -45,6 +45,20 @@ Result<void> RunFiles::open(runtime::Machine& machine, Duration epoch) {
     return {};
 }
 
+Result<void> RunFiles::record(runtime::Machine& machine, const MachineRecording::Wanted& wanted,
+                              std::vector<std::pair<std::string, std::string>> facts, Instant start, runtime::RecordedThreads threads) {
+    if (wanted.file.path.empty() && !wanted.memory) return {};
+    auto created = MachineRecording::create(wanted, machine, std::move(facts), start, threads);
+    if (!created) return created.error();
+    recording = std::move(*created);
+    return {};
+}
+
+void RunFiles::look_for_replay(const runtime::Snapshot& snapshot, const runtime::Machine& machine) const {
+    if (!recording || recording->memory() == nullptr) return;
+    recording->memory()->look(snapshot, [&machine](const AlarmFact& fact) { return machine.describe(fact).name; });
+}
+
 void RunFiles::finish_capture() const {
     if (!capture) return;
     if (auto ok = capture->finish(); !ok) print_error(ok.error());

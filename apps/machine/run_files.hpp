@@ -5,6 +5,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/machine_recording.hpp"
@@ -29,6 +31,12 @@ struct RunFiles {
 
     /// `epoch`: calendar time at machine time 0. Stays where it is until the machine's last cycle. Errors: of the files.
     [[nodiscard]] Result<void> open(runtime::Machine& machine, Duration epoch);
+    /// Before the machine's first cycle, where something of it is wanted. Errors: of MachineRecording::create().
+    [[nodiscard]] Result<void> record(runtime::Machine& machine, const MachineRecording::Wanted& wanted,
+                                      std::vector<std::pair<std::string, std::string>> facts, Instant start,
+                                      runtime::RecordedThreads threads);
+    /// Service side: alarms behind which the run is kept.
+    void look_for_replay(const runtime::Snapshot& snapshot, const runtime::Machine& machine) const;
     /// After the last cycle, and before say_frames(), where no thread writes the capture. Prints what goes wrong.
     void finish_capture() const;
     /// How many frames there are, and a warning where some are missing.

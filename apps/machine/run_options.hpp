@@ -24,7 +24,7 @@ struct RunOptions {
     std::shared_ptr<BundleRun> from_bundle{};  ///< with --bundle, once it is chosen
 };
 
-/// For the head of a recording (machine_recording.hpp); empty where none is made.
+/// For the head of a recording (machine_recording.hpp).
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
 /// From one thread, as fast as it goes. Both return the exit code.

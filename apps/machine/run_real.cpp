@@ -112,6 +112,15 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     say_kept(log, start, machine, options);
     say_kept(kept, start, machine, options);
 
+    if (auto begun = files.record(machine,
+                                  {{options.record, {options.record_size, options.record_disk}},
+                                   MachineRecording::memory_of(machine.config(), start, calendar_minus_machine_time())},
+                                  std::move(facts), start, RecordedThreads::several);
+        !begun) {
+        if (options.from_bundle) options.from_bundle->excuse();
+        print_error(begun.error());
+        return exit_bad_file;
+    }
     hmi::RuntimeLink link{machine};
     hmi::HmiOptions bridge_options;
     bridge_options.door = hmi::DoorThread::own;
@@ -131,6 +140,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     }
     bridge_options.recorder = files.recorder.get();
     link.set_recorder(files.recorder.get());
+    if (files.recording) bridge_options.run_memory = files.recording->memory();
     auto views = hmi::ViewAnswers::make(hmi_config.views, hmi::view_values_of(machine.config(), machine.layout()));
     if (!views) {
         print_error(views.error());
@@ -228,21 +238,18 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     SystemdLink manager{[](const char* name) -> const char* { return std::getenv(name); }};
     StatusLine status;
     RealtimeRunner runner{machine, world};
-    if (!options.record.empty()) {
-        auto created = MachineRecording::create({options.record, {options.record_size, options.record_disk}}, machine, std::move(facts),
-                                                start, RecordedThreads::several);
-        if (!created) {
-            if (options.from_bundle) options.from_bundle->excuse();
-            print_error(created.error());
-            return exit_bad_file;
-        }
-        files.recording = std::move(*created);
+    if (files.recording) {
         writers.push_back(std::make_unique<FileThread>(
-            [&log, &clock, recording = files.recording] {
-                if (const auto failed = recording->drain()) log.say(clock.now(), "record", failed->text());
+            [&log, &clock, &options, recording = files.recording] {
+                say_recorded(log, clock.now(), *recording, options.quiet);
                 return Result<void>{};
             },
-            [recording = files.recording] { return recording->finish(); }, [](const Error&) {}));
+            [&log, &clock, &options, recording = files.recording] {
+                auto done = recording->finish();
+                finish_run_memory(log, clock.now(), *recording, options.quiet);
+                return done;
+            },
+            [](const Error&) {}));
         runner.record_in_step();
     }
     bool said_stuck = false;
@@ -298,6 +305,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         kept.step(now, (*bridge)->snapshot());
         if (const auto* snapshot = (*bridge)->snapshot(); files.evidence && snapshot != nullptr) files.evidence->look(*snapshot);
         if (const auto* snapshot = (*bridge)->snapshot(); files.recorder && snapshot != nullptr) files.recorder->look(*snapshot);
+        if (const auto* snapshot = (*bridge)->snapshot(); snapshot != nullptr) files.look_for_replay(*snapshot, machine);
         time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {
             said_stop = true;

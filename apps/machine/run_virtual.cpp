@@ -39,20 +39,18 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     say_kept(log, clock.now(), *machine, options);
     if (loaded.hmi.modbus_server && !options.quiet)
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
-    if (!options.record.empty()) {
-        auto created = MachineRecording::create({options.record, {options.record_size, options.record_disk}}, *machine, std::move(facts),
-                                                clock.now(), RecordedThreads::one);
-        if (!created) {
-            if (options.from_bundle) options.from_bundle->excuse();
-            print_error(created.error());
-            return exit_bad_file;
-        }
-        files.recording = std::move(*created);
+    if (auto begun = files.record(*machine,
+                                  {{options.record, {options.record_size, options.record_disk}},
+                                   MachineRecording::memory_of(machine->config(), clock.now(), Duration{})},
+                                  std::move(facts), clock.now(), RecordedThreads::one);
+        !begun) {
+        if (options.from_bundle) options.from_bundle->excuse();
+        print_error(begun.error());
+        return exit_bad_file;
     }
     VirtualRunner runner{*machine, world, clock};
     runner.drain = [&] {
-        if (!files.recording) return;
-        if (const auto failed = files.recording->drain()) log.say(clock.now(), "record", failed->text());
+        if (files.recording) say_recorded(log, clock.now(), *files.recording, options.quiet);
     };
     std::optional<hmi::AlarmHistory> history;  // only where it was asked for: a run in virtual time leaves nothing behind by itself
     if (!options.history.empty() && loaded.hmi.history.rows > 0)
@@ -73,6 +71,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
             files.recorder->look(*machine->latest());
             say_recording(log, now, files.recorder->work());
         }
+        if (machine->latest() != nullptr) files.look_for_replay(*machine->latest(), *machine);
         const auto* snapshot = machine->latest();
         if (history && snapshot != nullptr) {
             history->look(*snapshot, now, now.time_since_epoch() / std::chrono::microseconds{1});
@@ -95,9 +94,14 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
                    fmt::format("ended by --duration: the bus needed {:.3g} s to become operational, and the run was to last {:.3g} s", took,
                                options.duration_s),
                    "nothing has moved; give --duration more than the bus needs"};
+    const auto recorded = [&] {
+        const bool whole = recording_finished(files, options);
+        if (files.recording) finish_run_memory(log, clock.now(), *files.recording, options.quiet);
+        return whole;
+    };
     if (!up) {
         finish_capture(files, options);
-        (void)recording_finished(files, options);
+        (void)recorded();
         print_error(up.error());
         return stop_requested() ? exit_ok : exit_bus;
     }
@@ -106,10 +110,11 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
     runner.shut_down();
     if (files.evidence) say_evidence(log, clock.now(), files.evidence->finish());
     if (files.recorder) finish_recordings(log, clock.now(), *files.recorder);
+    const bool whole = recorded();
     if (history) history->finish(clock.now());
     finish_capture(files, options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
-    if (!recording_finished(files, options)) return exit_bad_file;
+    if (!whole) return exit_bad_file;
     if (files.trace)
         if (auto ok = files.trace->finish(); !ok) {
             print_error(ok.error());

@@ -66,7 +66,7 @@ void finish_capture(const RunFiles& files, const RunOptions& options) {
 }
 
 void say_losses(const RunFiles& files, const RunOptions& options) {
-    if (const auto lost = files.recording ? files.recording->lost() : 0; lost > 0)
+    if (const auto lost = files.recording && !options.record.empty() ? files.recording->lost() : 0; lost > 0)
         print_warning(Error{"recording.lost", options.record,
                             fmt::format("{} did not fit: it cannot be replayed", count_text(lost, "record")),
                             "record onto a disk that keeps up"});
@@ -98,6 +98,34 @@ void finish_recordings(const MachineLog& log, Instant now, FlightRecorder& recor
         more = !file || !file->path.empty();
         say_recording(log, now, file);
     }
+}
+
+namespace {
+
+/// False: nothing was due.
+bool say_kept_run(const MachineLog& log, Instant now, const Result<RunMemory::Kept>& kept, bool quiet) {
+    if (!kept) log.say(now, "replay", kept.error().text());
+    else if (kept->path.empty()) return false;
+    else if (!quiet)
+        log.say(now, "replay",
+                fmt::format("the run{} can be replayed ({:.1f} s, {:.1f} MB): taktwerk replay {}",
+                            kept->why.empty() ? std::string{} : fmt::format(" up to '{}'", kept->why), to_seconds(kept->covered),
+                            static_cast<double>(kept->bytes) / 1e6, kept->path));
+    return true;
+}
+
+}  // namespace
+
+void say_recorded(const MachineLog& log, Instant now, MachineRecording& recording, bool quiet) {
+    if (const auto failed = recording.drain()) log.say(now, "record", failed->text());
+    if (auto* memory = recording.memory()) (void)say_kept_run(log, now, memory->work(), quiet);
+}
+
+void finish_run_memory(const MachineLog& log, Instant now, MachineRecording& recording, bool quiet) {
+    auto* memory = recording.memory();
+    if (memory == nullptr) return;
+    while (say_kept_run(log, now, memory->work(), quiet)) {}
+    (void)say_kept_run(log, now, memory->finish(), quiet);
 }
 
 void say_kept(const MachineLog& log, Instant now, const Machine& machine, const RunOptions& options) {

@@ -24,6 +24,10 @@ void say_evidence(const MachineLog& log, Instant now, const Result<runtime::Evid
 void say_recording(const MachineLog& log, Instant now, const Result<runtime::FlightRecorder::File>& file);
 /// What could not be written so far; however many there are.
 void finish_recordings(const MachineLog& log, Instant now, runtime::FlightRecorder& recorder);
+/// What came of the file of --record, and of the run in memory.
+void say_recorded(const MachineLog& log, Instant now, MachineRecording& recording, bool quiet);
+/// The end of the run in memory, behind that of the file.
+void finish_run_memory(const MachineLog& log, Instant now, MachineRecording& recording, bool quiet);
 void say_kept(const MachineLog& log, Instant now, const runtime::Machine& machine, const RunOptions& options);
 /// Which bundle it is, and why it may be another than the one that was active.
 void say_bundle(const MachineLog& log, Instant now, const RunOptions& options);

@@ -50,6 +50,7 @@ public:
     void set_simulate(Simulate simulate) { simulate_ = std::move(simulate); }
     /// Recordings around alarms; outlives this. Without one there are none.
     void set_recorder(runtime::FlightRecorder* recorder) noexcept { scope_.set_recorder(recorder); }
+    void set_run_memory(runtime::RunMemory* memory) noexcept { scope_.set_run_memory(memory); }
     /// For "alarm_history"; outlives this. nullptr: none is kept.
     void set_history(AlarmHistory* history) noexcept { history_ = history; }
 

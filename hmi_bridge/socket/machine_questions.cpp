@@ -141,30 +141,22 @@ void MachineQuestions::forget(ConnectionId connection) {
 
 /// A new look, unless one is under way, or the last is young.
 void MachineQuestions::look(Instant now) {
-    auto* bus = machine_.bus();
-    if (bus == nullptr || (look_ && !look_->done) || (looked_ && now - *looked_ < look_period)) return;
-    look_ = std::make_unique<Look>();
-    look_->survey = ecat::known_survey(bus->bus());
-    look_->begun = now;
-    // Before the bus is up its scripts have the datagrams; afterwards there is nobody who would carry one.
-    if (bus->phase() == ecat::Master::Phase::operational) look_->runner.emplace(ecat::look_at_ports(bus->bus(), look_->survey));
-    else look_->done = true;
+    auto* bus_look = machine_.bus_look();
+    if (bus_look == nullptr || looks_ || (looked_ && now - *looked_ < look_period)) return;
+    bus_look->begin();
+    looks_ = true;
 }
 
 void MachineQuestions::step(const runtime::Snapshot* snapshot, Instant now) {
     auto* bus = machine_.bus();
-    if (look_ && !look_->done) {
-        const bool up = bus != nullptr && bus->phase() == ecat::Master::Phase::operational;
-        if (up) look_->runner->step(now);
-        look_->done = !up || look_->runner->done() || now - look_->begun > look_patience;
-        if (look_->done) {
-            look_->runner.reset();  // it holds entries of the port
-            looked_ = now;
-        }
+    const auto* bus_look = machine_.bus_look();
+    if (looks_ && !bus_look->under_way()) {
+        looks_ = false;
+        looked_ = now;
     }
-    if (waiting_.empty() || (look_ && !look_->done)) return;
-    const auto body = bus != nullptr && look_
-                          ? Result<std::string>("\"bus\":" + bus_json(*bus, look_->survey, snapshot, machine_))
+    if (waiting_.empty() || looks_) return;
+    const auto body = bus != nullptr && looked_
+                          ? Result<std::string>("\"bus\":" + bus_json(*bus, bus_look->survey(), snapshot, machine_))
                           : Result<std::string>(Error{"state.not_yet", "", "this machine has no bus", "Ask a machine that has one."});
     for (auto& waiting : waiting_) answers_.push_back({waiting.connection, std::move(waiting.id), body});
     waiting_.clear();

@@ -25,9 +25,8 @@ namespace taktwerk::hmi {
 class MachineQuestions {
 public:
     static constexpr std::array<std::string_view, 4> words{"histograms", "bus", "drive_parameters", "log"};
-    static constexpr Duration look_period = std::chrono::seconds{1};            ///< ports of the bus are looked at so often at most
-    static constexpr Duration look_patience = std::chrono::milliseconds{1500};  ///< then what is known is the answer
-    static constexpr std::size_t most_log_lines = 500;                          ///< of one answer
+    static constexpr Duration look_period = std::chrono::seconds{1};  ///< ports of the bus are looked at so often at most
+    static constexpr std::size_t most_log_lines = 500;                ///< of one answer
 
     struct Answer {
         ConnectionId connection = 0;
@@ -50,12 +49,6 @@ public:
     std::optional<Answer> next_answer();
 
 private:
-    struct Look {
-        ecat::Survey survey;
-        std::optional<ecat::Runner> runner;
-        Instant begun{};
-        bool done = false;
-    };
     struct Waiting {
         ConnectionId connection = 0;
         std::string id;
@@ -66,9 +59,9 @@ private:
 
     MachineLink& machine_;
     std::shared_ptr<const LogTail> log_;
-    std::unique_ptr<Look> look_;  ///< its script runs on the bus' port
-    std::optional<Instant> looked_;
-    std::vector<Waiting> waiting_;  ///< for the look
+    bool looks_ = false;             ///< it asked for a look that has not come to its end
+    std::optional<Instant> looked_;  ///< when the last one did
+    std::vector<Waiting> waiting_;   ///< for the look
     std::deque<Answer> answers_;
 };
 

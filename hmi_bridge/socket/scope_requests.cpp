@@ -23,9 +23,9 @@ using runtime::RecordedSignal;
 using runtime::SignalRows;
 using runtime::ThinnedRead;
 
-constexpr std::array<std::string_view, 9> scope_words{"scope_signals",     "scope_read",     "scope_arm",
-                                                      "scope_state",       "scope_disarm",   "recordings",
-                                                      "recording_signals", "recording_read", "recording_part"};
+constexpr std::array<std::string_view, 11> scope_words{"scope_signals",  "scope_read",  "scope_arm",         "scope_state",
+                                                       "scope_disarm",   "recordings",  "recording_signals", "recording_read",
+                                                       "recording_part", "replay_keep", "replay_state"};
 constexpr std::uint64_t usual_points = 1000;
 static_assert(std::endian::native == std::endian::little, "the numbers of an answer are little-endian");
 
@@ -88,6 +88,7 @@ void ScopeRequests::say(ConnectionId connection, const std::string& id, std::str
 
 Result<void> ScopeRequests::handle(ConnectionId connection, const std::string& id, std::string_view cmd, JsonFields& fields, Instant now) {
     if (cmd.starts_with("recording")) return handle_recordings(connection, id, cmd, fields, now);
+    if (cmd.starts_with("replay")) return handle_replay(connection, id, cmd, fields, now);
     const auto* live = machine_.signals();
     if (live == nullptr) return Error{"scope.none", "", "this machine keeps no signals", "Ask a machine that `taktwerk run` runs."};
     if (cmd == "scope_read") {
@@ -150,6 +151,26 @@ Result<void> ScopeRequests::handle_recordings(ConnectionId connection, const std
         return Error{"recording.unknown", "", "this machine keeps no recordings", "Start it with `taktwerk run FILE --recordings FOLDER`."};
     if (auto ok = may_begin(connection); !ok) return ok;
     loading_.push_back(std::move(loading));
+    return {};
+}
+
+Result<void> ScopeRequests::handle_replay(ConnectionId connection, const std::string& id, std::string_view cmd, JsonFields& fields,
+                                          Instant now) {
+    fields.finish();
+    if (fields.error()) return *fields.error();
+    if (run_memory_ == nullptr)
+        return Error{"replay.not_recorded", "", "this run is not recorded: there is nothing to keep",
+                     "Start it with `recording: {replay: true}` in the machine file, and a folder for recordings that can be written."};
+    if (cmd == "replay_keep")
+        if (auto kept = run_memory_->keep(now); !kept) return std::move(kept).error();
+    const auto state = run_memory_->state();
+    nlohmann::ordered_json said{{"seconds", to_seconds(state.covered)},
+                                {"memory", state.memory},
+                                {"disk", state.disk},
+                                {"file", state.file},
+                                {"waits", state.waits},
+                                {"ended", state.ended ? state.ended->text() : std::string{}}};
+    say(connection, id, "replay", said.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     return {};
 }
 

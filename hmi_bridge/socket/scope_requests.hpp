@@ -22,6 +22,7 @@
 #include "runtime/flight/flight_recorder.hpp"
 #include "runtime/recording/signal_rows.hpp"
 #include "runtime/recording/thinned_read.hpp"
+#include "runtime/run_memory/run_memory.hpp"
 
 namespace taktwerk::hmi {
 
@@ -37,6 +38,8 @@ public:
     explicit ScopeRequests(const MachineLink& machine) : machine_(machine), trigger_(machine) {}
     /// Without one nothing is kept. Outlives this.
     void set_recorder(runtime::FlightRecorder* recorder) noexcept { recorder_ = recorder; }
+    /// Without one no run is kept. Outlives this.
+    void set_run_memory(runtime::RunMemory* memory) noexcept { run_memory_ = memory; }
 
     [[nodiscard]] static std::span<const std::string_view> words();
     [[nodiscard]] static bool knows(std::string_view cmd);
@@ -80,6 +83,8 @@ private:
     [[nodiscard]] static Asked read_asked(JsonFields& fields);
     [[nodiscard]] Result<void> handle_recordings(ConnectionId connection, const std::string& id, std::string_view cmd, JsonFields& fields,
                                                  Instant now);
+    [[nodiscard]] Result<void> handle_replay(ConnectionId connection, const std::string& id, std::string_view cmd, JsonFields& fields,
+                                             Instant now);
     [[nodiscard]] Result<void> may_begin(ConnectionId connection) const;
     [[nodiscard]] Result<void> begin_read(ConnectionId connection, const std::string& id, const Asked& asked,
                                           const runtime::SignalRows& rows, runtime::FlightRecorder::Rows kept);
@@ -92,6 +97,7 @@ private:
 
     const MachineLink& machine_;
     runtime::FlightRecorder* recorder_ = nullptr;
+    runtime::RunMemory* run_memory_ = nullptr;
     ScopeTrigger trigger_;
     std::list<Loading> loading_;
     std::list<Read> reads_;

@@ -72,6 +72,8 @@ inline constexpr std::array command_rules{
     CommandRule{"recording_signals", Role::viewer, false},
     CommandRule{"recording_read", Role::viewer, false},
     CommandRule{"recording_part", Role::operates, false},  // the file itself leaves the machine
+    CommandRule{"replay_keep", Role::operates, false},
+    CommandRule{"replay_state", Role::viewer, false},
 };
 
 /// What moves nothing and belongs to no connection: all pages ask it over one connection in turn (question_turns.hpp), so that it delays neither a stop nor

@@ -84,8 +84,9 @@ std::string Machine::bus_progress() const { return bus().progress(); }
 AlarmText Machine::describe(const AlarmFact& fact) const { return impl_->words.describe(fact); }
 axes::DrivePort* Machine::drive_port(std::size_t axis) noexcept {
     const bool on_drive = axis < impl_->layout.axes.size() && !impl_->layout.axes[axis].drive.empty();
-    return on_drive ? &impl_->drives.port(axis) : nullptr;
+    return on_drive ? &impl_->asked.port(axis) : nullptr;
 }
+BusLook& Machine::bus_look() noexcept { return impl_->look; }
 std::string Machine::program_fault(std::size_t program) const { return impl_->programs.fault(program); }
 
 // --- cycle ------------------------------------------------------------------------------------------------------------------

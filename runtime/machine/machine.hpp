@@ -40,6 +40,7 @@ struct AlarmText {
     std::string manual{};  ///< of a drive's own alarm: its profile and the section of its manual, "sv33-e 5.4"
 };
 
+class BusLook;
 class ReplayedInbox;
 struct FaultsSeen;
 
@@ -164,6 +165,8 @@ public:
     [[nodiscard]] axes::DrivePort* drive_port(std::size_t axis) noexcept;
     /// One thread beside the cycle: page faults of the cycle's thread since the machine operates (runtime/run/fault_watch.hpp).
     void tell_page_faults(const FaultsSeen& seen) noexcept;
+    /// Service side: how the slaves' ports stand, for whoever asks.
+    [[nodiscard]] BusLook& bus_look() noexcept;
     /// Service side: what a program threw when it stopped by itself; empty when it did not.
     [[nodiscard]] std::string program_fault(std::size_t program) const;
     [[nodiscard]] const ecat::Master& bus() const noexcept;

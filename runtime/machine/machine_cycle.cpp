@@ -31,6 +31,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
                     const std::vector<modbus::tcp::Exchange*>& exchanges, std::vector<Error>& errors)
     : body(std::move(machine), transport),
       drives(body, lines, errors),
+      asked(body, drives),
+      look(body),
       groups(body, drives),
       modbus(body, exchanges, errors),
       retain(kept(body, errors)),
@@ -40,7 +42,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       desk(body, hands, measuring, programs),
       supervisor(body, drives, groups, modbus, programs, desk, retain.get()),
       outcome(body, drives),
-      replayed(body, programs, desk, drives.serial(), modbus, supervisor),
+      replayed(body, programs, desk, drives.serial(), modbus, supervisor, asked, look),
       snapshots(body, measuring, programs),
       layout(layout_of(body, drives, programs.host())),
       rows(body, programs, layout),
@@ -74,9 +76,12 @@ Result<void> Machine::Impl::arm() {
 }
 
 void Machine::Impl::service_bus(Instant now) {
+    asked.note(now);
     body.bus.step(now);
     lay_out_outputs();
     drives.step(now);
+    asked.collect();
+    look.step(now);
     programs.carry_requests();
 }
 

@@ -8,6 +8,8 @@
 #include "core/stopwatch.hpp"
 #include "runtime/cycle_histograms.hpp"
 #include "runtime/machine/alarm_words.hpp"
+#include "runtime/machine/bus_look.hpp"
+#include "runtime/machine/drive_desk.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/hot_connect.hpp"
 #include "runtime/machine/machine.hpp"
@@ -62,6 +64,8 @@ struct Machine::Impl {
 
     MachineBody body;
     MachineDrives drives;
+    DriveDesk asked;
+    BusLook look;
     HotConnect groups;
     ModbusDevices modbus;
     std::unique_ptr<RetainKeeper> retain;  // nullptr: nothing is kept

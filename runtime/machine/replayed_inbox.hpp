@@ -2,6 +2,8 @@
 // Where a recording goes in again at the places where the cycle takes what comes from outside: whoever replays a machine (runtime/replay/) puts in
 // before each cycle what it had. Frames come over its transport. Not real-time; between two cycles, on their thread.
 
+#include "runtime/machine/bus_look.hpp"
+#include "runtime/machine/drive_desk.hpp"
 #include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/serial_drives.hpp"
@@ -14,8 +16,15 @@ namespace taktwerk::runtime {
 class ReplayedInbox {
 public:
     ReplayedInbox(MachineBody& body, ProgramRunner& programs, OperatorDesk& desk, SerialDrives& serial, ModbusDevices& modbus,
-                  Supervisor& supervisor)
-        : body_(body), programs_(programs), desk_(desk), serial_(serial), modbus_(modbus), supervisor_(supervisor) {}
+                  Supervisor& supervisor, DriveDesk& asked, BusLook& look)
+        : body_(body),
+          programs_(programs),
+          desk_(desk),
+          serial_(serial),
+          modbus_(modbus),
+          supervisor_(supervisor),
+          asked_(asked),
+          look_(look) {}
 
     /// From here on nothing comes from where it usually does.
     void begin() noexcept { body_.replayed = true; }
@@ -38,6 +47,11 @@ public:
         supervisor_.page_faults().replay(seen);
         return true;
     }
+    [[nodiscard]] bool put(const AskedRecord& record) {
+        if (record.kind != AskedKind::ports) return asked_.ask_again(record);
+        look_.begin();
+        return true;
+    }
     [[nodiscard]] bool put(const HookRecord& record) { return programs_.replay_hook(record.program, record.stop); }
     [[nodiscard]] bool put(const TaskTimesRecord& record) noexcept { return programs_.replay_times(record); }
     [[nodiscard]] bool put(const SlowRecord& record) noexcept {
@@ -53,6 +67,8 @@ private:
     SerialDrives& serial_;
     ModbusDevices& modbus_;
     Supervisor& supervisor_;
+    DriveDesk& asked_;
+    BusLook& look_;
 };
 
 }  // namespace taktwerk::runtime

@@ -25,7 +25,7 @@ inline constexpr RecordChannel wire_channel = 21;
 [[nodiscard]] inline std::vector<std::string> inbox_channels() {
     return {"",        "tick",       "frame",      "command", "object", "departure", "sample",    "modbus_request", "modbus_word",
             "level",   "half_frame", "refused",    "link",    "ring",   "disk",      "setpoints", "points",         "wish",
-            "outputs", "call",       "start_file", "wire",    "hook",   "slow",      "task_times", "faults"};
+            "outputs", "call",       "start_file", "wire",    "hook",   "slow",      "task_times", "faults",         "asked"};
 }
 
 /// What Machine does outside the cycle, in the order in which the cycle's thread did it.

@@ -216,6 +216,7 @@ bool Replay::Impl::put(const RecordView& record) {
         case task_times_channel: return into(read_task_times(record.bytes));
         case slow_channel: return into(read_slow(record.bytes));
         case faults_channel: return into(read_faults(record.bytes));
+        case asked_channel: return into(read_asked(record.bytes));
         default: return true;  // what the machine makes of it
     }
 }

@@ -1,5 +1,7 @@
 // A run as a file, and again: the built command on machines of config/machines/ with their programs.
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -8,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/terminal/exit_code.hpp"
+#include "hmi_bridge/socket/client.hpp"
 #include "tests/apps/child.hpp"
 #include "tests/apps/machine_files.hpp"
 
@@ -71,6 +74,7 @@ protected:
     }
 
     std::string folder_;
+    std::size_t parts_ = 0;
 };
 
 TEST_F(ReplayCommand, FiveDrivesOnABusAndALineWithProgramAndEventsAreIdentical) {
@@ -229,6 +233,177 @@ TEST_F(ReplayCommand, ARunInRealTimeIsReplayedInVirtualTime) {
     EXPECT_EQ(replay.code, exit_ok) << replay.text;
     EXPECT_THAT(replay.text, HasSubstr("identical: "));
     EXPECT_THAT(command({"replay", path("run.twrec"), "--show"}).text, HasSubstr("hook"));
+}
+
+// --- in parts, bounded, and what is left of one that was interrupted ---------------------------------------------------------------------
+
+TEST_F(ReplayCommand, PartsAreReplayedAsOneAndTheDiskIsBounded) {
+    const auto run = [&](const std::string& disk) {
+        const auto ran = command({"run", shipped + "five-drives.yaml", "--virtual-time", "--duration", "12s", "--no-events", "--record",
+                                  path("run.twrec"), "--record-size", "100kB", "--record-disk", disk, "--quiet"});
+        std::uint64_t bytes = 0;
+        parts_ = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+            ++parts_;
+            EXPECT_LE(entry.file_size(), 100'000u) << entry.path();
+            bytes += entry.file_size();
+        }
+        EXPECT_LE(bytes, disk == "1GB" ? 1'000'000'000u : 250'000u);
+        return ran;
+    };
+    const auto whole = run("1GB");
+    EXPECT_EQ(whole.code, exit_ok) << whole.text;
+    EXPECT_GT(parts_, 2u);
+    const auto replay = command({"replay", path("run.twrec"), "--quiet"});
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, HasSubstr("identical: "));
+    EXPECT_THAT(replay.text, Not(HasSubstr("no end")));
+    const auto second = command({"replay", path("run.2.twrec"), "--quiet"});
+    EXPECT_EQ(second.code, exit_bad_file);
+    EXPECT_THAT(second.text, HasSubstr("part 2"));
+
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) std::filesystem::remove(entry.path());
+    const auto bounded = run("250kB");
+    EXPECT_EQ(bounded.code, exit_ok) << "it was told to end there";
+    EXPECT_THAT(bounded.text, HasSubstr("used up its 250000 bytes"));
+    const auto up_to_there = command({"replay", path("run.twrec"), "--quiet"});
+    EXPECT_EQ(up_to_there.code, exit_ok) << up_to_there.text;
+    EXPECT_THAT(up_to_there.text, AllOf(HasSubstr("identical: "), HasSubstr("--record-disk")));
+}
+
+// The disk is full: the machine runs to its end, says so, and what fitted can be replayed. A file system of its own, of half a megabyte.
+TEST_F(ReplayCommand, AFullDiskEndsTheRecordingAndNotTheMachine) {
+    if (::geteuid() != 0) GTEST_SKIP() << "mounting needs root";
+    std::filesystem::create_directories(path("small"));
+    Child child({"unshare", "-m", "sh", "-c",
+                 "mount -t tmpfs -o size=512k none \"$1\" || exit 99; \"$2\" run \"$3\" --virtual-time --duration 30s --no-events --record "
+                 "\"$1/run.twrec\" --quiet; echo \"code $?\"; cp \"$1/run.twrec\" \"$4\"",
+                 "sh", path("small"), taktwerk, shipped + "five-drives.yaml", path("run.twrec")});
+    const int code = child.wait(120s);
+    if (code == 99) GTEST_SKIP() << "this system lets nobody mount: " << child.text();
+    EXPECT_EQ(code, 0) << child.text();
+    EXPECT_THAT(child.text(), AllOf(HasSubstr("cannot write the recording: No space left on device"),
+                                    HasSubstr("code " + std::to_string(exit_bad_file))));
+    const auto replay = command({"replay", path("run.twrec"), "--json", "--quiet"});
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, AllOf(HasSubstr("\"identical\":true"), HasSubstr("\"complete\":false")));
+    EXPECT_LE(std::filesystem::file_size(path("run.twrec")), 512u * 1024u);
+    EXPECT_GT(std::filesystem::file_size(path("run.twrec")), 400'000u);
+}
+
+TEST_F(ReplayCommand, KilledAtAnyInstantAllButTheLastSecondIsThere) {
+    const auto file = altered("demo.yaml", "lcm: { enabled: true,", "socket: '" + path("socket") + "'\n  lcm: { enabled: false,");
+    for (const auto after : {2600ms, 3100ms, 3450ms}) {
+        Child run({taktwerk, "run", file, "--simulate", "--record", path("run.twrec"), "--quiet"});
+        EXPECT_EQ(run.wait(after), -1) << run.text();
+        run.signal(SIGKILL);
+        EXPECT_EQ(run.wait(10s), 128 + SIGKILL);
+        const auto replay = command({"replay", path("run.twrec"), "--quiet"});
+        EXPECT_EQ(replay.code, exit_ok) << replay.text;
+        EXPECT_THAT(replay.text, AllOf(HasSubstr("identical: "), HasSubstr("the recording has no end")));
+        std::filesystem::remove(path("run.twrec"));
+    }
+}
+
+// --- nobody was recording ------------------------------------------------------------------------------------------------------------------
+
+/// The only file of this ending in a folder.
+std::string only_file(const std::string& folder, const std::string& ending) {
+    std::vector<std::string> found;
+    if (std::filesystem::is_directory(folder))
+        for (const auto& entry : std::filesystem::directory_iterator(folder))
+            if (entry.path().extension() == ending) found.push_back(entry.path());
+    EXPECT_EQ(found.size(), 1u) << "files " << ending << " in " << folder;
+    return found.empty() ? std::string{} : found.front();
+}
+
+TEST_F(ReplayCommand, BehindAnAlarmInVirtualTimeTheRunIsThere) {
+    const auto run = command({"run", shipped + "demo.yaml", "--virtual-time", "--duration", "22s", "--recordings", path("kept")});
+    ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
+
+    const auto file = only_file(path("kept"), ".twrec");
+
+    EXPECT_THAT(run.text, HasSubstr("taktwerk replay " + file));
+    const auto replay = command({"replay", file, "--until", "drive_fault", "--quiet"});
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, AllOf(HasSubstr("identical: "), HasSubstr("alarm axis y: "), Not(HasSubstr("was not reached"))));
+    EXPECT_EQ(command({"replay", file, "--quiet"}).code, exit_ok);
+}
+
+/// A machine in real time with folders of its own. Its emergency stop comes after 4 s.
+class KeptRun : public ReplayCommand {
+protected:
+    [[nodiscard]] std::string machine(const std::string& recording) const {
+        auto text = text_of(altered("demo.yaml", "lcm: { enabled: true,", "socket: '" + path("socket") + "'\n  lcm: { enabled: false,"));
+        const std::string was = "at: 13 s, input: estop_ok";
+        const auto at = text.find(was);
+        EXPECT_NE(at, std::string::npos);
+        if (at != std::string::npos) text.replace(at, was.size(), "at: 4 s, input: estop_ok");
+        if (!recording.empty()) text += "recording: {" + recording + "}\n";
+        std::ofstream(path("machines/demo.yaml")) << text;
+        return path("machines/demo.yaml");
+    }
+    Outcome ask(std::vector<std::string> words) const {
+        words.insert(words.end(), {"-s", path("socket")});
+        return command(std::move(words));
+    }
+};
+
+TEST_F(KeptRun, BehindAnAlarmInRealTimeItIsThereAndReplayedIdentically) {
+    Child run({taktwerk, "run", machine(""), "--simulate", "--duration", "9s", "--recordings", path("kept")});
+    ASSERT_TRUE(run.says("can be replayed", 20s)) << run.text();
+    EXPECT_NE(run.wait(30s), -1) << run.text();
+
+    const auto file = only_file(path("kept"), ".twrec");
+
+    EXPECT_THAT(run.text(), HasSubstr("taktwerk replay " + file));
+    const auto replay = command({"replay", file, "--until", "emergency_stop", "--quiet"});
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, AllOf(HasSubstr("identical: "), Not(HasSubstr("was not reached"))));
+    EXPECT_EQ(command({"replay", file, "--quiet"}).code, exit_ok);
+}
+
+// "It just happened again", and no alarm came: somebody asks for it. What people asked of drives and of the bus meanwhile is in it.
+TEST_F(KeptRun, IsThereWhenSomebodyAsksWithWhatPeopleAskedOfDrivesAndBus) {
+    Child run({taktwerk, "run", machine(""), "--simulate", "--no-events", "--recordings", path("kept")});
+    ASSERT_TRUE(run.says("running, ", 30s)) << run.text();
+    EXPECT_THAT(ask({"record", "status"}).text, HasSubstr("in memory"));
+    const auto read = ask({"drive", "get", "x", "P05.13"});
+    EXPECT_EQ(read.code, exit_ok) << read.text;
+    EXPECT_EQ(ask({"mode", "manual"}).code, exit_ok);
+    const auto written = ask({"drive", "set", "x", "P05.13=300"});
+    EXPECT_EQ(written.code, exit_ok) << written.text;
+    const auto again = ask({"drive", "get", "x", "P05.13"});
+    EXPECT_THAT(again.text, HasSubstr("= 300"));
+    {  // as the page asks for the tree of its slaves
+        auto client = hmi::Client::connect(path("socket"));
+        ASSERT_TRUE(client.ok()) << client.error().text();
+        const auto bus = client->request({{"cmd", "bus"}});
+        ASSERT_TRUE(bus.ok()) << bus.error().text();
+        EXPECT_TRUE(bus->at("bus").at("tree_known").get<bool>());
+    }
+
+    const auto kept = ask({"record", "keep"});
+
+    ASSERT_EQ(kept.code, exit_ok) << kept.text;
+    const auto file = only_file(path("kept"), ".twrec");
+    EXPECT_THAT(kept.text, HasSubstr("taktwerk replay " + file));
+    EXPECT_THAT(command({"replay", file, "--show"}).text, HasSubstr("asked"));
+    const auto replay = command({"replay", file, "--quiet"});
+    EXPECT_EQ(replay.code, exit_ok) << replay.text;
+    EXPECT_THAT(replay.text, AllOf(HasSubstr("identical: "), HasSubstr("kept while the machine ran on")));
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(30s), exit_ok) << run.text();
+}
+
+TEST_F(KeptRun, IsNotTakenWhereTheMachineFileSaysSo) {
+    Child run({taktwerk, "run", machine("replay: false"), "--simulate", "--no-events", "--recordings", path("kept")});
+    ASSERT_TRUE(run.says("running, ", 30s)) << run.text();
+    const auto refused = ask({"record", "keep"});
+    EXPECT_EQ(refused.code, exit_refused) << refused.text;
+    EXPECT_THAT(refused.text, HasSubstr("this run is not recorded"));
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(30s), exit_ok) << run.text();
 }
 
 }  // namespace

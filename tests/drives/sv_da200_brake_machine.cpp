@@ -40,6 +40,7 @@ const std::string axis_with_brake =
     "    simulation: { load_torque: 0.3 N m }\n";
 
 struct HangingLoad : ::testing::Test {
+    HangingLoad() { m.replayed.leave_out(); }  // the test works its blocks
     TestMachine m{one_drive_machine<BrakeDesk>("      profile: sv-da200\n" + commissioned + mapped_brake, axis_with_brake)};
     BrakeDesk& desk = *BrakeDesk::here;
     axes::sim::Cia402Axis& drive() { return *m.world.drive("x"); }

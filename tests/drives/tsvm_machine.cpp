@@ -107,6 +107,7 @@ protected:
     TestMachine m{machine()};
 
     void SetUp() override {
+        m.replayed.leave_out();  // the test works the blocks of its robot
         ASSERT_TRUE(m.up());
         ASSERT_NE(Robot::running, nullptr);
         for (auto& j : Robot::running->joints) j.power.Enable = true;
@@ -339,6 +340,7 @@ TEST_F(TsvmMachine, NoModeIsChangedInMotion) {
 // 7.2, alarm 43: enabled while the mode is 0. The mode is set and confirmed by 6061h before 000Fh, on each of the six.
 TEST(TsvmBringUp, TheModeIsConfirmedBeforeEachAxisIsEnabled) {
     TestMachine m{machine()};
+    m.replayed.leave_out();  // likewise
     ASSERT_TRUE(m.up());
     std::array<ModeWatch, 6> watch;
     auto& dictionary = m.world.network().slave(0).dictionary();

@@ -10,6 +10,7 @@
 #include "core/bytes.hpp"
 #include "core/crc32.hpp"
 #include "runtime/compression/compression.hpp"
+#include "runtime/recording/asked_record.hpp"
 #include "runtime/recording/inbox_reader.hpp"
 #include "runtime/recording_file/recording_file.hpp"
 
@@ -104,6 +105,7 @@ void read_as_inbox(std::span<const std::byte> bytes) {
     same_again(bytes, read_slow(bytes), [&](Recorder& r, const SlowRecord& v) { record_slow(r, at, v.task); });
     same_again(bytes, read_task_times(bytes), [&](Recorder& r, const TaskTimesRecord& v) { record_task_times(r, at, v); });
     same_again(bytes, read_faults(bytes), [&](Recorder& r, const FaultsSeen& v) { record_faults(r, at, v); });
+    same_again(bytes, read_asked(bytes), [&](Recorder& r, const AskedRecord& v) { record_asked(r, at, v); });
     (void)read_hash(bytes);
     (void)read_link(bytes);
     (void)read_ring(bytes);

@@ -1,0 +1,242 @@
+#include "runtime/run_memory/run_memory.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "runtime/alarms.hpp"
+#include "runtime/stamped_name.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view unfinished = ".part";
+constexpr std::size_t most_wishes = 16;  ///< waiting at once; what comes then is in the last one's file all the same
+
+}  // namespace
+
+Result<std::unique_ptr<RunMemory>> RunMemory::open(RecordingInfo info, Place place, Room room) {
+    std::error_code failed;
+    fs::create_directories(place.folder, failed);
+    if (failed && !fs::is_directory(place.folder))
+        return Error{"recording.directory", place.folder, fmt::format("the folder for recordings cannot be made: {}", failed.message()),
+                     "choose another one: `recording: {directory: ...}`, or --recordings"};
+    std::unique_ptr<RunMemory> memory{new RunMemory{std::move(info), std::move(place), room}};
+    memory->clean();
+    for (const auto& entry : fs::directory_iterator(memory->place_.folder, failed))
+        if (entry.path().extension() == replay_ending) memory->there_.insert(entry.path().string());
+    return memory;
+}
+
+void RunMemory::clean() const {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(place_.folder, ignored))
+        if (is_stamped(entry.path().filename().string(), place_.machine, std::string{replay_ending} + std::string{unfinished}))
+            fs::remove(entry.path(), ignored);
+}
+
+std::string RunMemory::path_for(std::string_view why, Instant at) const {
+    const auto since_1970 = at.time_since_epoch() + place_.epoch;
+    const auto path = [&](const std::string& word) {
+        return (fs::path(place_.folder) / stamped_name(place_.machine, since_1970, word, replay_ending)).string();
+    };
+    auto wished = path(std::string{why});
+    for (int i = 2; there_.contains(wished); ++i) wished = path(fmt::format("{}_{}", why, i));
+    return wished;
+}
+
+// --- service side -------------------------------------------------------------------------------------------------------------------
+
+void RunMemory::look(const Snapshot& snapshot, const NameOf& name_of) {
+    // At the end things are meant to stop: then only what came before it.
+    auto until = Instant::max();
+    if (snapshot.phase != MachinePhase::running) {
+        const auto listed = std::span{snapshot.alarms}.first(snapshot.alarm_count);
+        const auto end = std::ranges::find(listed, id(MachineAlarm::stopped_by_signal), [](const ActiveAlarm& a) { return a.fact.id; });
+        if (end == listed.end()) return;
+        until = end->since;
+    }
+    alarms_.look(snapshot, [&](const AlarmFact& fact, Reaction reaction, Instant since) {
+        if (reaction < Reaction::stop_axis || since >= until) return false;
+        const auto name = name_of(fact);
+        const std::scoped_lock lock{mutex_};
+        if (wishes_.size() >= most_wishes) wishes_.pop_back();
+        wishes_.push_back({name, since + place_.after});
+        if (path_.empty()) path_ = path_for(name, since);
+        return true;
+    });
+}
+
+Result<std::string> RunMemory::keep(Instant now) {
+    const std::scoped_lock lock{mutex_};
+    if (ended_)
+        return Error{"recording.ended", place_.machine, fmt::format("this run is taken no further: {}", ended_->what), ended_->remedy};
+    if (wishes_.size() >= most_wishes) wishes_.pop_back();
+    wishes_.push_back({"", now});
+    if (path_.empty()) path_ = path_for("asked", now);
+    return path_;
+}
+
+RunMemory::State RunMemory::state() const {
+    const std::scoped_lock lock{mutex_};
+    return {std::max(until_, place_.start) - place_.start, in_memory_, on_disk_, path_, !wishes_.empty(), ended_};
+}
+
+// --- a thread that may wait ------------------------------------------------------------------------------------------------------------
+
+void RunMemory::take(PackedBlock block, Instant until, std::uint64_t lost) {
+    const std::scoped_lock lock{mutex_};
+    lost_ = lost;
+    if (lost > 0 && !ended_) {
+        blocks_.clear();
+        in_memory_ = 0;
+        ended_ = Error{"recording.lost", place_.machine,
+                       fmt::format("{} records of the run did not get here: from there on nothing is certain", lost),
+                       "This computer has no time for it: look at its load, or write `recording: {replay: false}`"};
+    }
+    if (ended_) return;
+    in_memory_ += block.bytes.size();
+    until_ = until;
+    blocks_.push_back(std::move(block));
+}
+
+Error RunMemory::end(Error why) {
+    const std::scoped_lock lock{mutex_};
+    blocks_.clear();
+    in_memory_ = 0;
+    ended_ = why;
+    return why;
+}
+
+Result<void> RunMemory::write_blocks(const std::string& path) {
+    if (!file_) {
+        auto created = RecordingWriter::create(path + std::string{unfinished}, info_, {0, room_.disk});
+        if (!created) return std::move(created).error();
+        file_ = std::move(*created);
+    }
+    for (;;) {
+        PackedBlock block;
+        {
+            const std::scoped_lock lock{mutex_};
+            if (blocks_.empty()) return {};
+            block = std::move(blocks_.front());
+            blocks_.pop_front();
+            in_memory_ -= block.bytes.size();
+        }
+        auto done = file_->write(block);
+        {
+            const std::scoped_lock lock{mutex_};
+            on_disk_ = file_->bytes();
+        }
+        if (done) continue;
+        auto error = done.error();
+        if (error.code == "recording.limit") {
+            error = {"recording.limit", place_.machine,
+                     fmt::format("the run is longer than the {} bytes that its replay may have on the disk", room_.disk),
+                     "What came before can be replayed. For longer runs: `recording: {replay_disk: ...}`; each start begins anew"};
+            (void)file_->finish(RecordingEnd::limit, lost_).ok();
+        }
+        return error;
+    }
+}
+
+void RunMemory::keep_bounds() const {
+    const auto newest = path_;
+    keep_newest(place_.folder, place_.machine, replay_ending, room_.files, newest);
+    std::vector<std::pair<std::string, std::uint64_t>> files;
+    std::error_code ignored;
+    std::uint64_t all = file_ ? file_->bytes() : 0;
+    for (const auto& entry : fs::directory_iterator(place_.folder, ignored)) {
+        const auto path = entry.path().string();
+        if (!is_stamped(entry.path().filename().string(), place_.machine, replay_ending) || path == newest) continue;
+        files.emplace_back(path, fs::file_size(entry.path(), ignored));
+        all += files.back().second;
+    }
+    std::ranges::sort(files);
+    for (const auto& [path, bytes] : files) {
+        if (all <= room_.disk) return;
+        if (fs::remove(path, ignored)) all -= bytes;
+    }
+}
+
+Result<RunMemory::Kept> RunMemory::write(const Wish& wish) {
+    const auto path = [&] {
+        const std::scoped_lock lock{mutex_};
+        return path_;
+    }();
+    if (auto done = write_blocks(path); !done) return end(done.error());
+    if (auto done = file_->finish(RecordingEnd::kept, lost_); !done) return end(done.error());
+    if (!kept_) {
+        std::error_code failed;
+        fs::rename(path + std::string{unfinished}, path, failed);
+        if (failed)
+            return end(
+                {"recording.write", path, fmt::format("the recording cannot get its name: {}", failed.message()), "look into that folder"});
+        kept_ = true;
+    }
+    keep_bounds();
+    return Kept{path, wish.why, std::max(until_, place_.start) - place_.start, file_->bytes()};
+}
+
+Result<RunMemory::Kept> RunMemory::work() {
+    std::optional<Wish> due;
+    bool full = false;
+    std::string path;
+    {
+        const std::scoped_lock lock{mutex_};
+        if (ended_ && !said_) {
+            said_ = true;
+            return *ended_;
+        }
+        if (!wishes_.empty() && (ended_ || wishes_.front().until <= until_)) {
+            due = wishes_.front();
+            wishes_.pop_front();
+            // One file has them all.
+            while (!wishes_.empty() && !ended_ && wishes_.front().until <= until_) wishes_.pop_front();
+        }
+        if (due && ended_)
+            return Error{"recording.ended", due->why.empty() ? place_.machine : due->why,
+                         fmt::format("what led to it cannot be replayed: {}", ended_->what), ended_->remedy};
+        full = in_memory_ > room_.memory;
+        if (full && path_.empty()) path_ = path_for("run", place_.start);
+        path = path_;
+    }
+    if (due) {
+        auto kept = write(*due);
+        said_ = said_ || !kept;
+        return kept;
+    }
+    if (!full) return Kept{};
+    auto done = write_blocks(path);
+    if (done && kept_) done = file_->finish(RecordingEnd::kept, lost_);
+    if (!done) {
+        said_ = true;
+        return end(done.error());
+    }
+    keep_bounds();
+    return Kept{};
+}
+
+Result<RunMemory::Kept> RunMemory::finish() {
+    std::optional<Wish> last;
+    {
+        const std::scoped_lock lock{mutex_};
+        if (!wishes_.empty() && !ended_) last = wishes_.back();
+        wishes_.clear();
+    }
+    if (last) return write(*last);
+    if (file_ && !kept_) {
+        file_.reset();
+        clean();
+    }
+    return Kept{};
+}
+
+}  // namespace taktwerk::runtime

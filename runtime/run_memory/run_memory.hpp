@@ -1,0 +1,110 @@
+#pragma once
+// The run from its start, small and in memory, so that what stopped the machine can be replayed: on an alarm that stops something, or when somebody
+// asks, it is kept as a file, up to `after` behind that moment. What comes later in the run is put behind it in the same file. Where the memory
+// is full the file takes what is there before anybody asks, and goes at the end of a run in which nobody did.
+//
+//     service side: look(snapshot) again and again, keep();   a thread that may wait for a disk: take(), work() again and again, finish() last
+//
+// Why from the start: the whole state of a machine cannot be written down (docs/replay.md).
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "core/alarm.hpp"
+#include "core/result.hpp"
+#include "core/time.hpp"
+#include "runtime/new_alarms.hpp"
+#include "runtime/recording_file/recording_file.hpp"
+
+namespace taktwerk::runtime {
+
+inline constexpr std::string_view replay_ending = ".twrec";
+
+class RunMemory {
+public:
+    struct Room {
+        std::uint64_t memory = 0;  ///< bytes of blocks, then they go to the disk
+        std::uint64_t disk = 0;    ///< bytes of all files of this machine's runs; the oldest go
+        std::size_t files = 0;     ///< so many of them
+    };
+    struct Place {
+        std::string machine, folder;
+        Instant start{};   ///< machine time of the run's start
+        Duration epoch{};  ///< calendar time at machine time 0
+        Duration after{};  ///< what is kept behind an alarm
+    };
+    using NameOf = std::function<std::string(const AlarmFact&)>;  ///< "drive_fault"
+
+    /// Makes the folder, and takes away what a killed run left unfinished in it. Errors: recording.directory.
+    [[nodiscard]] static Result<std::unique_ptr<RunMemory>> open(RecordingInfo info, Place place, Room room);
+
+    // --- service side: nothing in it waits -----------------------------------------------------------------------------------------
+    void look(const Snapshot& snapshot, const NameOf& name_of);
+    /// The run up to now, however it goes on; gives the path that it will have. Errors: recording.ended, where the run is longer than its room.
+    [[nodiscard]] Result<std::string> keep(Instant now);
+    struct State {
+        Duration covered{};  ///< from the run's start
+        std::uint64_t memory = 0, disk = 0;
+        std::string file;            ///< where the run is kept; empty: nowhere yet
+        bool waits = false;          ///< its last seconds are still to come
+        std::optional<Error> ended;  ///< nothing more is taken, and why
+    };
+    [[nodiscard]] State state() const;
+
+    // --- a thread that may wait ------------------------------------------------------------------------------------------------------
+    /// The next block of the run; `until`: of its last record. `lost`: records that did not get into the ring so far.
+    void take(PackedBlock block, Instant until, std::uint64_t lost);
+    struct Kept {
+        std::string path;  ///< empty: nothing was due
+        std::string why;   ///< the alarm; empty: somebody asked
+        Duration covered{};
+        std::uint64_t bytes = 0;
+    };
+    /// What is due. Errors: recording.write, recording.limit, recording.lost: the run is taken no further, and this is said once; recording.ended: what
+    /// was asked for cannot be kept any more.
+    [[nodiscard]] Result<Kept> work();
+    /// After the last block: what is still wished, and what nobody wished goes. Again until nothing comes.
+    [[nodiscard]] Result<Kept> finish();
+
+private:
+    struct Wish {
+        std::string why;
+        Instant until{};
+    };
+    RunMemory(RecordingInfo info, Place place, Room room) : info_(std::move(info)), place_(std::move(place)), room_(room) {}
+    [[nodiscard]] std::string path_for(std::string_view why, Instant at) const;
+    /// Its file is begun where there is none, and has all blocks.
+    [[nodiscard]] Result<void> write_blocks(const std::string& path);
+    [[nodiscard]] Result<Kept> write(const Wish& wish);
+    [[nodiscard]] Error end(Error why);
+    void clean() const;
+    void keep_bounds() const;
+
+    const RecordingInfo info_;
+    const Place place_;
+    const Room room_;
+    std::set<std::string> there_;  // files of earlier runs, as they were at the start
+    NewAlarms alarms_;             // service side
+
+    mutable std::mutex mutex_;  // of what both sides see
+    std::deque<PackedBlock> blocks_;
+    std::uint64_t in_memory_ = 0;
+    Instant until_{};
+    std::deque<Wish> wishes_;
+    std::optional<Error> ended_;
+    std::string path_;  // of the file, once the run has its name
+
+    // The thread that may wait.
+    std::optional<RecordingWriter> file_;
+    bool kept_ = false, said_ = false;
+    std::uint64_t lost_ = 0, on_disk_ = 0;
+};
+
+}  // namespace taktwerk::runtime
