@@ -31,6 +31,7 @@ enum class MachineAlarm : AlarmId {
     points_forced = 0x601A,
     task_watchdog = 0x601B,
     task_late = 0x601C,
+    bundle_fell_back = 0x601F,
     page_faults = 0x6020,
 };
 /// First number of input_faulty: what its terminal says.

@@ -9,7 +9,7 @@
 
 namespace taktwerk::runtime {
 
-inline constexpr std::array<AlarmInfo, 26> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 27> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -201,6 +201,15 @@ inline constexpr std::array<AlarmInfo, 26> machine_alarms{{
      "Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)",
      "`taktwerk unforce`, or let who forced them end his session; `state` tells which points and who",
      ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::bundle_fell_back),
+     "bundle_fell_back",
+     "The machine runs from the version before: the new one was left",
+     "机器正在运行上一版本:新版本已被放弃",
+     "The new version did not reach operation in several starts, or it is damaged or not for this computer",
+     "See in the log which version it was and why; `taktwerk bundle activate` takes it again once that is mended",
+     ResetRule::reset,
      Reaction::warn,
      {}},
     {id(MachineAlarm::task_watchdog), "task_watchdog",

@@ -235,6 +235,7 @@ struct MachineConfig {
     RetainConfig retain;
     EvidenceConfig evidence;
     RecordingConfig recording;
+    bool fell_back = false;               ///< it runs from a bundle, and not from the version that was to run
     std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle
 };
 

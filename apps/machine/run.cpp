@@ -95,6 +95,7 @@ void add_run(CLI::App& app, Action& action) {
                 if (const auto up = fence_machine(); !up && !options->quiet) print_warning(up.error());
             auto loaded = load(options->file, loading);
             if (!loaded) return static_cast<int>(exit_bad_file);
+            loaded->machine.fell_back = options->from_bundle && options->from_bundle->start().fell_back;
             if (options->without_events) loaded->machine.simulation.events.clear();
             if (!options->retain.empty()) loaded->machine.retain.directory = options->retain;
             loaded->machine.retain.start = options->start == "cold"     ? runtime::RetainStart::cold

@@ -47,6 +47,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     modbus_.watch();
     raise_rivals();
     raise_retain();
+    if (body_.config.fell_back && body_.cycles == 0) body_.raise(MachineAlarm::bundle_fell_back, AlarmSource::machine, 0);
     raise_inputs();
     raise_forces();
 

@@ -46,7 +46,9 @@ Result<void> check_shared_object(const std::string& path) {
     if (!read_at(file, 0, header) || std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
         return not_loadable("it is no shared object: it does not begin as one");
     if (header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_ident[EI_DATA] != ELFDATA2LSB || header.e_machine != this_machine)
-        return not_loadable(fmt::format("it is built for another processor (ELF machine {}, here {})", header.e_machine, this_machine));
+        return not_loadable(fmt::format("it is built for another processor (ELF machine {}{}{}, here {})", header.e_machine,
+                                        header.e_ident[EI_CLASS] != ELFCLASS64 ? ", not of 64 bits" : "",
+                                        header.e_ident[EI_DATA] != ELFDATA2LSB ? ", big-endian" : "", this_machine));
     if (header.e_type != ET_DYN || header.e_phentsize != sizeof(Elf64_Phdr))
         return not_loadable("it is no shared object but an object file, a program of its own, or the like");
 

@@ -15,6 +15,8 @@ export const machine_alarms: Readonly<Record<string, string>> = {
     'The host has no real-time kernel, or the thread no real-time priority': '主机没有实时内核，或线程没有实时优先级',
     'See `taktwerk run` messages about real time; the machine runs on': '查看启动日志中关于实时性的提示；机器继续运行',
     'Both files in the directory of `retain` are torn or altered, as by a failing disk': '`retain` 目录中的两个文件均已损坏或被改动，例如磁盘故障',
+    'The new version did not reach operation in several starts, or it is damaged or not for this computer': '新版本多次启动均未进入运行，或已损坏，或不适用于此计算机',
+    'See in the log which version it was and why; `taktwerk bundle activate` takes it again once that is mended': '在日志中查看是哪个版本及其原因；排除后用 `taktwerk bundle activate` 重新启用',
     'Home the axes; check the disk': '各轴回零；检查磁盘',
     'The directory of `retain` cannot be written, its disk is full, or it has not come back from a write for seconds': '`retain` 目录不可写、磁盘已满，或写入已数秒未返回',
     'Make room, give `retain` a directory that the runtime may write, look at that disk': '腾出空间，为 `retain` 指定运行时可写的目录，检查该磁盘',
