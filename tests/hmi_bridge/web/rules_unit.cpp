@@ -75,7 +75,9 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
                                                       {"recordings", "yyyy"},
                                                       {"recording_signals", "yyyy"},
                                                       {"recording_read", "yyyy"},
-                                                      {"recording_part", "nyyy"}};
+                                                      {"recording_part", "nyyy"},
+                                                      {"replay_keep", "nyyy"},
+                                                      {"replay_state", "yyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
