@@ -124,5 +124,14 @@ TEST(KnownPoses, ToolAndBase) {
     EXPECT_LT((position_of(there) - Eigen::Vector3d(1 + .474, 0, 2 - .630)).norm(), 1e-12);
 }
 
+// Behind joint 6 a deviation is a tool of its own: shifted, then turned about x, the new y, the new z.
+TEST(KnownPoses, DeviationsShiftAndTurn) {
+    PublishedArm arm = irb_120();
+    auto& deviations = std::get<SixJoints>(arm.description.arm).deviations;
+    deviations[5] = {{.001, .002, .003}, {.2, .3, .4}};
+    const Pose turned = composed(posed(.001, .002, .003, 0, 0, .2), composed(posed(0, 0, 0, 0, .3, 0), posed(0, 0, 0, .4, 0, 0)));
+    expect_pose(arm, {}, composed(posed(.374, 0, .630, 0, right, 0), turned));
+}
+
 }  // namespace
 }  // namespace taktwerk::axes
