@@ -444,10 +444,13 @@ void RunPlanner::plan(const Curve& curve, std::span<const PathAxisLimits> limits
         make_problem(task);
         const SpeedOutcome outcome = problem_.solve(middles_, SpeedGoal::fastest, out.rounds == 1 ? SpeedGuess::rough : SpeedGuess::near);
         out.steps += outcome.steps;
-        if (!outcome.feasible) break;
+        if (!outcome.feasible) {
+            out.use = verify(task, out.rounds);
+            break;
+        }
         out.use = verify(task, out.rounds);
         out.found = out.use.inside();
-        if (!out.found) split_cells();
+        if (!out.found && out.rounds < rounds_at_most) split_cells();
     }
     out.cells = static_cast<int>(nodes_.size()) - 1;
     if (!out.found && start_.rest_length > 0 && out.use.velocity > 0) {
