@@ -85,14 +85,18 @@ double Quintic::feature(double s) const noexcept {
 
 double Quintic::parameter_at(double s) const noexcept {
     const std::size_t i = span_of(s);
-    // Hermite's interpolation of the inverse with two derivatives at both ends, then one step of Newton's method.
+    // Hermite's interpolation of the inverse with two derivatives at both ends, then Newton's method, of which one step mostly does.
     const double h = lengths_[i + 1] - lengths_[i], x = (s - lengths_[i]) / h;
     const double u0 = static_cast<double>(i) / spans;
     const double d0 = h * rates_[i], d1 = h * rates_[i + 1], e0 = h * h * rate_slopes_[i] / 2, e1 = h * h * rate_slopes_[i + 1];
     const double way = 1.0 / spans - d0 - e0, speed = d1 - d0 - 2 * e0, pull = e1 - 2 * e0;
     double u = u0 + x * (d0 + x * (e0 + x * (10 * way - 4 * speed + 0.5 * pull +
                                              x * (-15 * way + 7 * speed - pull + x * (6 * way - 3 * speed + 0.5 * pull)))));
-    u -= (lengths_[i] + length_between(u0, u) - s) / tangent(u).norm();
+    for (int k = 0; k < 3; ++k) {
+        const double step = (lengths_[i] + length_between(u0, u) - s) / tangent(u).norm();
+        u -= step;
+        if (std::fabs(step) < 1e-8) break;  // the next one would be its square
+    }
     return std::clamp(u, 0.0, 1.0);
 }
 

@@ -26,8 +26,8 @@ public:
     /// u at s, and s at u: each is the other's inverse within 1e-12 of the length.
     [[nodiscard]] double parameter_at(double s) const noexcept;
     [[nodiscard]] double length_to(double u) const noexcept;
-    /// Whether its speed |dx/du| stays above a fiftieth of its length: otherwise it has nearly a cusp.
-    [[nodiscard]] bool smooth() const noexcept { return slowest_ > 0.02 * length(); }
+    /// Whether its speed |dx/du| stays above a twentieth of its length: otherwise it has nearly a cusp.
+    [[nodiscard]] bool smooth() const noexcept { return slowest_ > 0.05 * length(); }
 
     /// The length around s on which its direction changes little: a part of its radius of curvature, and of itself.
     [[nodiscard]] double feature(double s) const noexcept;
@@ -35,7 +35,7 @@ public:
     [[nodiscard]] PathVector point(double u) const noexcept;
 
 private:
-    static constexpr int spans = 16;
+    static constexpr int spans = 32;  // a power of two
 
     void measure() noexcept;
     [[nodiscard]] std::size_t span_of(double s) const noexcept;

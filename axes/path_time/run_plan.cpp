@@ -16,7 +16,7 @@ constexpr int most_of_run = 24;       // a cell is at most this part of a run
 constexpr double rest_share = 0.2;    // of the way with jerk that the piece at rest takes
 constexpr int rounds_at_most = 6;
 constexpr double slow_share = 0.02;  // of v2: what goes on where a former plan stopped
-constexpr int verified_points = 8;   // per cell
+constexpr int verified_points = 10;  // per cell
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// The greatest use of each limit by equally spaced samples, with what a parabola through three of them reaches in between.
@@ -360,8 +360,8 @@ LimitUse RunPlanner::verify(const RunTask& task, int round) {
         CellLimits& share = cell_limits_[static_cast<std::size_t>(i)];
         constexpr double beyond = 1 + 1e-4;
         if (use.inside()) continue;
-        if (use.velocity > 1) share.velocity /= use.velocity * beyond;
-        if (use.acceleration > 1) share.acceleration /= use.acceleration * beyond;
+        if (use.velocity > 1 - 2e-6) share.velocity /= use.velocity * beyond;
+        if (use.acceleration > 1 - 2e-6) share.acceleration /= use.acceleration * beyond;
         if (use.jerk > 1) share.jerk /= use.jerk * beyond;
         if (std::max({use.velocity, use.acceleration, use.jerk}) > (round > 2 ? 1.002 : 1.02))
             split_.push_back(static_cast<std::size_t>(i));
@@ -397,7 +397,7 @@ void RunPlanner::split_cells() {
 
 /// What is left above a limit after all rounds is a matter of some cells; all are slowed down for it: from rest v2 may be scaled.
 void RunPlanner::slow_down(const LimitUse& use) {
-    constexpr double margin = 1 - 1e-6;
+    constexpr double margin = 1 - 1e-5;
     const double share = margin * std::min({1.0, 1 / (use.velocity * use.velocity), 1 / use.acceleration, 1 / two_thirds(use.jerk)});
     for (double& middle : middles_) middle *= share;
 }
@@ -444,10 +444,13 @@ void RunPlanner::plan(const Curve& curve, std::span<const PathAxisLimits> limits
         make_problem(task);
         const SpeedOutcome outcome = problem_.solve(middles_, SpeedGoal::fastest, out.rounds == 1 ? SpeedGuess::rough : SpeedGuess::near);
         out.steps += outcome.steps;
-        if (!outcome.feasible) break;
+        if (!outcome.feasible) {
+            out.use = verify(task, out.rounds);
+            break;
+        }
         out.use = verify(task, out.rounds);
         out.found = out.use.inside();
-        if (!out.found) split_cells();
+        if (!out.found && out.rounds < rounds_at_most) split_cells();
     }
     out.cells = static_cast<int>(nodes_.size()) - 1;
     if (!out.found && start_.rest_length > 0 && out.use.velocity > 0) {

@@ -18,8 +18,8 @@ struct LimitUse {
     double jerk = 0;
 
     void widen(const LimitUse& other) noexcept;
-    /// Whether it may be run: the limits hold, jerk within what is promised.
-    [[nodiscard]] bool inside() const noexcept { return velocity <= 1 + 1e-7 && acceleration <= 1 + 1e-7 && jerk <= 1 + 2e-4; }
+    /// Whether it may be run: velocity and acceleration with a hair left for what lies between samples, jerk within what is promised.
+    [[nodiscard]] bool inside() const noexcept { return velocity <= 1 - 2e-6 && acceleration <= 1 - 2e-6 && jerk <= 1 + 2e-4; }
 };
 
 /// The use of all limits at a point of the curve by a motion along it.

@@ -55,7 +55,7 @@ public:
         : path_(path), axes_(axes), machine_(machine) {}
 
     /// Links of the arm; its shoulder stands at the origin.
-    static constexpr double upper = 400, lower = 300;
+    static constexpr double upper = 400, lower = 300, in_front = 450;  // of it the path's origin
 
     [[nodiscard]] int axes() const noexcept override { return axes_; }
     [[nodiscard]] double begin() const noexcept override { return 0; }
@@ -75,7 +75,7 @@ public:
         const double own = section.element.feature(section.from + s - section.begin);
         if (machine_ == Machine::cartesian) return own;
         const PathVector at = section.at(s).at;  // the arm's own curvature: of its distance from the shoulder and from being straight
-        const double reach = at.head<2>().norm();
+        const double reach = std::hypot(at[0] + in_front, at[1]);
         return std::min(own, 0.2 * std::max(1.0, std::min({reach, upper + lower - reach, reach - (upper - lower)})));
     }
     [[nodiscard]] CurvePoint at(double s, CurveSide side) const noexcept override { return axes_at(s, side).point; }
@@ -99,6 +99,7 @@ public:
         const int first = machine_ == Machine::arm ? 2 : 0;
         for (int k = first; k < axes_; ++k) set(k, x[static_cast<std::size_t>(k)]);
         if (machine_ == Machine::arm) {
+            x[0].v += in_front;
             // Law of cosines: the elbow's cosine is a polynomial of x and y, its sine the positive root.
             const Jet square = x[0] * x[0] + x[1] * x[1];
             const Jet cosine = (0.5 / (upper * lower)) * (square - Jet{upper * upper + lower * lower});

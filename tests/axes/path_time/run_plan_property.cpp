@@ -102,5 +102,19 @@ TEST(RunPlanProperty, CartesianProgramsKeepEveryLimit) {
     EXPECT_EQ(totals.lost, 0u);
 }
 
+// Through the inverse of an arm of two links, which bends every line: joints' limits hold as well as axes' do.
+TEST(RunPlanProperty, ProgramsThroughAKinematicsKeepEveryLimit) {
+    Totals totals;
+    RandomProgram random(3);
+    const std::size_t cases = property_cases(15);
+    for (std::size_t i = 0; i < cases && !HasFailure(); ++i) {
+        SCOPED_TRACE(::testing::Message() << "program " << i);
+        const Path path = random.path(random.whole(1, 4), random.between_decades(1, 25), 2, random.between_decades(50, 500));
+        plan_all(path, PathCurve(path, 2, PathCurve::Machine::arm), random.limits(2, random.between_decades(0.5, 5)), totals);
+    }
+    report_plans("arm", totals);
+    EXPECT_EQ(totals.lost, 0u);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes
