@@ -75,8 +75,11 @@ std::vector<std::pair<std::string, std::string>> facts_of(const std::string& mac
     return facts;
 }
 
-std::optional<MachineRecording::Memory> MachineRecording::memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch) {
+std::optional<MachineRecording::Memory> MachineRecording::memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch,
+                                                                    runtime::RecordedThreads threads) {
     const auto& recording = config.recording;
+    const bool no_time = config.realtime.required || config.cycle < std::chrono::milliseconds{1};
+    if (threads == runtime::RecordedThreads::several && no_time) return std::nullopt;
     if (!recording.replay || recording.directory.empty() || recording.files == 0) return std::nullopt;
     constexpr std::uint64_t megabyte = 1'000'000;
     return Memory{{config.name, recording.directory, start, epoch, recording.after},

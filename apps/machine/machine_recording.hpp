@@ -38,8 +38,10 @@ public:
         RecordedFile file{};  ///< no path: none
         std::optional<Memory> memory;
     };
-    /// As the machine's `recording` says; `start`, `epoch`: as RunMemory::Place has them.
-    [[nodiscard]] static std::optional<Memory> memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch);
+    /// As the machine's `recording` says; `start`, `epoch`: as RunMemory::Place has them. None where the bus' scripts, which take memory from the heap,
+    /// would come onto the thread of a cycle that has no time for it: in real time below 1 ms, or where the machine requires real time.
+    [[nodiscard]] static std::optional<Memory> memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch,
+                                                         runtime::RecordedThreads threads);
 
     /// Before the machine's first cycle; from here on it records. `facts`: facts_of(). `start`: machine time that people call 0.
     /// Errors: recording.write, recording.directory.

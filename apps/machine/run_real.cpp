@@ -112,10 +112,11 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     say_kept(log, start, machine, options);
     say_kept(kept, start, machine, options);
 
-    if (auto begun = files.record(machine,
-                                  {{options.record, {options.record_size, options.record_disk}},
-                                   MachineRecording::memory_of(machine.config(), start, calendar_minus_machine_time())},
-                                  std::move(facts), start, RecordedThreads::several);
+    if (auto begun =
+            files.record(machine,
+                         {{options.record, {options.record_size, options.record_disk}},
+                          MachineRecording::memory_of(machine.config(), start, calendar_minus_machine_time(), RecordedThreads::several)},
+                         std::move(facts), start, RecordedThreads::several);
         !begun) {
         if (options.from_bundle) options.from_bundle->excuse();
         print_error(begun.error());

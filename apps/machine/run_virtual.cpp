@@ -41,7 +41,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options, Facts facts) {
         log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
     if (auto begun = files.record(*machine,
                                   {{options.record, {options.record_size, options.record_disk}},
-                                   MachineRecording::memory_of(machine->config(), clock.now(), Duration{})},
+                                   MachineRecording::memory_of(machine->config(), clock.now(), Duration{}, RecordedThreads::one)},
                                   std::move(facts), clock.now(), RecordedThreads::one);
         !begun) {
         if (options.from_bundle) options.from_bundle->excuse();

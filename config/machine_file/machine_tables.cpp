@@ -457,9 +457,8 @@ Table<runtime::RecordingConfig> recording_table() {
                 field("before", &R::before, duration(100ms, 1h), "what a recording shows before its alarm"),
                 field("after", &R::after, duration(100ms, 10min), "and behind it"),
                 field("replay", &R::replay, boolean(),
-                      "the run from its start up to there is kept as well, for `taktwerk replay`; false: no run is, and the bus' scripts "
-                      "have a thread of "
-                      "their own"),
+                      "the run from its start up to there is kept as well, for `taktwerk replay`; false, below a cycle of 1 ms and with "
+                      "`realtime: {required: true}`: no run is, and the bus' scripts have a thread of their own"),
                 field("replay_memory", &R::replay_memory, integer<std::uint32_t>(1, 65536),
                       "MB that the run may have in memory; what is more goes to the disk"),
                 field("replay_disk", &R::replay_disk, integer<std::uint32_t>(1, 10'000'000),

@@ -160,7 +160,9 @@ Result<void> ScopeRequests::handle_replay(ConnectionId connection, const std::st
     if (fields.error()) return *fields.error();
     if (run_memory_ == nullptr)
         return Error{"replay.not_recorded", "", "this run is not recorded: there is nothing to keep",
-                     "Start it with `recording: {replay: true}` in the machine file, and a folder for recordings that can be written."};
+                     "Start it with `recording: {replay: true}` in the machine file, and a folder for recordings that can be written; "
+                     "below a cycle of 1 ms, and "
+                     "where real time is required, with `run --record`."};
     if (cmd == "replay_keep")
         if (auto kept = run_memory_->keep(now); !kept) return std::move(kept).error();
     const auto state = run_memory_->state();

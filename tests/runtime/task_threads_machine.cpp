@@ -8,6 +8,7 @@
 
 #include "core/realtime.hpp"
 #include "runtime/alarms.hpp"
+#include "runtime/recording/task_times_record.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "tests/machines/replay_check.hpp"
 #include "tests/patience.hpp"
