@@ -20,6 +20,7 @@
 #include "programs/api/program_entry.hpp"
 #include "runtime/analog_axis.hpp"
 #include "runtime/io_point.hpp"
+#include "runtime/recording_config.hpp"
 #include "runtime/retain_config.hpp"
 #include "runtime/serial_config.hpp"
 
@@ -200,18 +201,6 @@ struct EvidenceConfig {
     std::string directory;         ///< empty: none is kept
     std::uint16_t files = 20;      ///< so many are kept, the newest; 0: all
     std::uint16_t megabytes = 16;  ///< of memory for the last frames, taken twice
-};
-
-/// The memory of the scope, and what is kept of it around each alarm that stops something (docs/recording.md).
-struct RecordingConfig {
-    Duration depth = std::chrono::seconds{20};   ///< of every signal, each cycle, in memory
-    std::string directory;                       ///< of the recordings around alarms; empty: none is kept
-    std::uint16_t files = 20;                    ///< so many are kept, the newest; 0: all
-    Duration before = std::chrono::seconds{10};  ///< what a recording shows before its alarm ...
-    Duration after = std::chrono::seconds{2};    ///< ... and behind it
-    bool replay = true;                          ///< the run up to there is kept as well, for `taktwerk replay`
-    std::uint32_t replay_memory = 64;            ///< MB of it in memory, then it goes to the disk
-    std::uint32_t replay_disk = 2000;            ///< MB of all of them there
 };
 
 struct MachineConfig {

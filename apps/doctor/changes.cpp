@@ -59,13 +59,15 @@ Result<void> turn(const std::filesystem::path& path, const std::string& value) {
     return done;
 }
 
-const char* word(Change::Kind kind) { return kind == Change::Kind::file ? "file" : kind == Change::Kind::knob ? "knob" : "ethernet"; }
-
-std::string named(const Change& change) {
-    return change.kind == Change::Kind::ethernet ? fmt::format("{} {}", change.target, name(change.knob)) : change.target;
+const char* word(HostChange::Kind kind) {
+    return kind == HostChange::Kind::file ? "file" : kind == HostChange::Kind::knob ? "knob" : "ethernet";
 }
 
-bool same_place(const Change& a, const Change& b) { return a.kind == b.kind && a.target == b.target && a.knob == b.knob; }
+std::string named(const HostChange& change) {
+    return change.kind == HostChange::Kind::ethernet ? fmt::format("{} {}", change.target, name(change.knob)) : change.target;
+}
+
+bool same_place(const HostChange& a, const HostChange& b) { return a.kind == b.kind && a.target == b.target && a.knob == b.knob; }
 
 /// A number of an interrupt means another device after a restart.
 bool means_something_else(const AppliedChange& applied, const std::string& boot) {
@@ -78,7 +80,7 @@ std::string record_text(const std::vector<AppliedChange>& all) {
     auto list = Json::array();
     for (const auto& each : all) {
         Json one{{"kind", word(each.change.kind)}, {"target", each.change.target}};
-        if (each.change.kind == Change::Kind::ethernet) one["knob"] = name(each.change.knob);
+        if (each.change.kind == HostChange::Kind::ethernet) one["knob"] = name(each.change.knob);
         one["before"] = each.before ? Json(*each.before) : Json(nullptr);
         one["after"] = each.change.value;
         one["made_folders"] = each.made_folders;
@@ -103,10 +105,10 @@ Result<std::vector<AppliedChange>> read_record(const std::string& text) {
         AppliedChange applied;
         applied.change.target = *target;
         applied.change.value = *after;
-        if (*kind == "file") applied.change.kind = Change::Kind::file;
-        else if (*kind == "knob") applied.change.kind = Change::Kind::knob;
+        if (*kind == "file") applied.change.kind = HostChange::Kind::file;
+        else if (*kind == "knob") applied.change.kind = HostChange::Kind::knob;
         else if (const auto knob = ethernet_knob(string("knob").value_or("")); *kind == "ethernet" && knob) {
-            applied.change.kind = Change::Kind::ethernet;
+            applied.change.kind = HostChange::Kind::ethernet;
             applied.change.knob = *knob;
         } else return wrong;
         applied.before = string("before");
@@ -148,13 +150,13 @@ Result<void> Changes::record(const std::vector<AppliedChange>& all) const {
     return error;
 }
 
-std::optional<std::string> Changes::now(const Change& change) const {
-    if (change.kind == Change::Kind::ethernet) {
+std::optional<std::string> Changes::now(const HostChange& change) const {
+    if (change.kind == HostChange::Kind::ethernet) {
         const auto value = value_of(ports_.read(change.target), change.knob);
         return value ? std::optional{std::to_string(*value)} : std::nullopt;
     }
     std::error_code failed;
-    if (change.kind == Change::Kind::file) {
+    if (change.kind == HostChange::Kind::file) {
         if (!std::filesystem::exists(below(change.target), failed)) return std::nullopt;
         // Whole, with blanks at its end: it comes back as it was.
         std::string all;
@@ -170,10 +172,10 @@ std::optional<std::string> Changes::now(const Change& change) const {
     return open != std::string::npos && close != std::string::npos && close > open ? text->substr(open + 1, close - open - 1) : *text;
 }
 
-Result<void> Changes::put(const Change& change, const std::string& value) const {
-    if (change.kind == Change::Kind::ethernet)
+Result<void> Changes::put(const HostChange& change, const std::string& value) const {
+    if (change.kind == HostChange::Kind::ethernet)
         return ports_.set(change.target, change.knob, static_cast<std::uint32_t>(std::strtoul(value.c_str(), nullptr, 10)));
-    if (change.kind == Change::Kind::knob) return turn(below(change.target), value);
+    if (change.kind == HostChange::Kind::knob) return turn(below(change.target), value);
     std::error_code failed;
     std::filesystem::create_directories(below(change.target).parent_path(), failed);
     return replace(below(change.target), value);
@@ -188,7 +190,7 @@ std::vector<std::string> Changes::missing_folders(const std::string& path) const
     return all;
 }
 
-Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<Change>& wanted) {
+Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<HostChange>& wanted) {
     auto known = recorded();
     if (!known) return known.error();
     auto all = std::move(known).value();
@@ -197,16 +199,17 @@ Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<Change>& wan
         const auto before = now(change);
         if (before == change.value) continue;
         // There is nothing to turn: another kernel, another driver.
-        if (!before && change.kind != Change::Kind::file) continue;
+        if (!before && change.kind != HostChange::Kind::file) continue;
         const auto old = std::find_if(all.begin(), all.end(), [&](const auto& each) { return same_place(each.change, change); });
         auto next = all;
         if (old != all.end()) next[static_cast<std::size_t>(old - all.begin())].change.value = change.value;
         else
-            next.push_back(
-                {change, before, change.kind == Change::Kind::file ? missing_folders(change.target) : std::vector<std::string>{}, boot()});
+            next.push_back({change, before,
+                            change.kind == HostChange::Kind::file ? missing_folders(change.target) : std::vector<std::string>{}, boot()});
         if (auto written = record(next); !written) return written.error();
-        ChangeOutcome outcome{change.kind == Change::Kind::file ? fmt::format("{}: {}", change.target, before ? "written anew" : "new file")
-                                                                : fmt::format("{}: {} -> {}", named(change), *before, change.value)};
+        ChangeOutcome outcome{change.kind == HostChange::Kind::file
+                                  ? fmt::format("{}: {}", change.target, before ? "written anew" : "new file")
+                                  : fmt::format("{}: {} -> {}", named(change), *before, change.value)};
         if (auto changed = put(change, change.value); !changed) outcome.error = changed.error();
         else if (const auto after = now(change); after != change.value)
             outcome.error = Error{"doctor.not_taken", named(change),
@@ -251,8 +254,8 @@ Result<std::vector<ChangeOutcome>> Changes::revert() {
             outcome.error = back.error();
             kept.insert(kept.begin(), applied);
         } else {
-            outcome.words += applied.change.kind == Change::Kind::file ? applied.before ? "has its old text" : "removed"
-                                                                       : fmt::format("{} -> {}", applied.change.value, *applied.before);
+            outcome.words += applied.change.kind == HostChange::Kind::file ? applied.before ? "has its old text" : "removed"
+                                                                           : fmt::format("{} -> {}", applied.change.value, *applied.before);
         }
         all.pop_back();
         auto rest = all;

@@ -15,7 +15,7 @@ namespace taktwerk::apps {
 
 /// One change that was written down.
 struct AppliedChange {
-    Change change;
+    HostChange change;
     std::optional<std::string> before;        ///< nothing: there was no such file
     std::vector<std::string> made_folders{};  ///< for it, the deepest first
     std::string boot{};                       ///< of the computer, when it was done
@@ -34,7 +34,7 @@ public:
     Changes(std::filesystem::path root, EthernetPorts& ports) : root_(std::move(root)), ports_(ports) {}
 
     /// What is as wanted already is not mentioned. Errors: doctor.record (nothing was changed).
-    [[nodiscard]] Result<std::vector<ChangeOutcome>> apply(const std::vector<Change>& wanted);
+    [[nodiscard]] Result<std::vector<ChangeOutcome>> apply(const std::vector<HostChange>& wanted);
     /// The newest first. What somebody else has changed since is left alone and said. Errors: doctor.record.
     [[nodiscard]] Result<std::vector<ChangeOutcome>> revert();
     /// Errors: doctor.record: the record is there and cannot be understood.
@@ -42,8 +42,8 @@ public:
 
 private:
     [[nodiscard]] std::filesystem::path below(const std::string& path) const { return root_ / path.substr(path.front() == '/' ? 1 : 0); }
-    [[nodiscard]] std::optional<std::string> now(const Change& change) const;
-    [[nodiscard]] Result<void> put(const Change& change, const std::string& value) const;
+    [[nodiscard]] std::optional<std::string> now(const HostChange& change) const;
+    [[nodiscard]] Result<void> put(const HostChange& change, const std::string& value) const;
     [[nodiscard]] Result<void> take_back(const AppliedChange& applied) const;
     [[nodiscard]] Result<void> record(const std::vector<AppliedChange>& all) const;
     [[nodiscard]] std::vector<std::string> missing_folders(const std::string& path) const;

@@ -58,7 +58,7 @@ int change(const DoctorOptions& options, const Examination& seen, EthernetPorts&
         fmt::print("Taken back:\n");
         return say(*done, "nothing: no change of `doctor --apply` is recorded here") ? exit_ok : exit_warnings;
     }
-    std::vector<Change> wanted;
+    std::vector<HostChange> wanted;
     for (const auto& finding : seen.findings) wanted.insert(wanted.end(), finding.changes.begin(), finding.changes.end());
     const auto done = changes.apply(wanted);
     if (!done) return print_error(done.error()), exit_bad_file;

@@ -10,7 +10,7 @@
 namespace taktwerk::apps {
 
 /// One thing that `--apply` writes, and `--revert` takes back.
-struct Change {
+struct HostChange {
     enum class Kind : std::uint8_t {
         file,      ///< `target` is a path, `value` its whole text: what is kept over a restart of the computer
         knob,      ///< `target` is a file of /proc or /sys: holds until that restart
@@ -32,13 +32,13 @@ enum class Severity : std::uint8_t {
 struct Finding {
     std::string code;  ///< stable: "cpu.governor"
     Severity severity = Severity::good;
-    double cost_us = 0;             ///< worst that it adds to a cycle, us; what findings are sorted by
-    std::string found;              ///< one line: what there is
-    std::string costs;              ///< one line; empty when it is good
-    std::string source;             ///< of that figure
-    std::string remedy;             ///< lines to copy into a shell or a file; empty: there is nothing to do
-    std::vector<Change> changes{};  ///< what `--apply` does; empty: a person has to
-    std::string then{};             ///< command with which these take effect at once, where they would wait for a restart
+    double cost_us = 0;                 ///< worst that it adds to a cycle, us; what findings are sorted by
+    std::string found;                  ///< one line: what there is
+    std::string costs;                  ///< one line; empty when it is good
+    std::string source;                 ///< of that figure
+    std::string remedy;                 ///< lines to copy into a shell or a file; empty: there is nothing to do
+    std::vector<HostChange> changes{};  ///< what `--apply` does; empty: a person has to
+    std::string then{};                 ///< command with which these take effect at once, where they would wait for a restart
 };
 
 /// What the findings are judged by.

@@ -17,7 +17,7 @@ using Findings = std::vector<Finding>;
 Finding good(std::string code, std::string found) { return {std::move(code), Severity::good, 0, std::move(found), "", "", ""}; }
 
 Finding dear(const Wanted& wanted, std::string code, double cost_us, std::string found, std::string costs, std::string source,
-             std::string remedy, std::vector<Change> changes = {}, std::string then = {}) {
+             std::string remedy, std::vector<HostChange> changes = {}, std::string then = {}) {
     return {std::move(code),   severity_of(cost_us, wanted.cycle),
             cost_us,           std::move(found),
             std::move(costs),  std::move(source),
@@ -25,8 +25,8 @@ Finding dear(const Wanted& wanted, std::string code, double cost_us, std::string
             std::move(then)};
 }
 
-Change file(std::string path, std::string text) { return {Change::Kind::file, std::move(path), std::move(text)}; }
-Change knob(std::string path, std::string value) { return {Change::Kind::knob, std::move(path), std::move(value)}; }
+HostChange file(std::string path, std::string text) { return {HostChange::Kind::file, std::move(path), std::move(text)}; }
+HostChange knob(std::string path, std::string value) { return {HostChange::Kind::knob, std::move(path), std::move(value)}; }
 
 void kernel(Findings& out, const HostFacts& facts, const Wanted& wanted) {
     const auto& k = facts.kernel;
@@ -76,7 +76,7 @@ void clock_source(Findings& out, const HostFacts& facts, const Wanted& wanted) {
 void rights(Findings& out, const HostFacts& facts, const Wanted& wanted) {
     const auto& r = facts.rights;
     const auto limits = file("/etc/security/limits.d/60-taktwerk.conf", "@taktwerk - rtprio 95\n@taktwerk - memlock unlimited\n");
-    std::vector<Change> changes;
+    std::vector<HostChange> changes;
     if (facts.has_group) changes.push_back(limits);
     const std::string remedy =
         "run it as the service taktwerk@MACHINE (docs/service.md), or for people of the group taktwerk, from their next login on:\n"
@@ -114,7 +114,7 @@ void sleep_states(Findings& out, const HostFacts& facts, const Wanted& wanted) {
                                                     deepest->name, deepest->exit_us)));
         return;
     }
-    std::vector<Change> changes;
+    std::vector<HostChange> changes;
     const std::string rule = "KERNEL==\"cpu_dma_latency\", GROUP=\"taktwerk\", MODE=\"0660\"";
     if (facts.has_group) changes.push_back(file("/etc/udev/rules.d/60-taktwerk-latency.rules", rule + "\n"));
     out.push_back(dear(wanted, "cpu.sleep", deepest->exit_us,
@@ -136,7 +136,7 @@ void governor(Findings& out, const HostFacts& facts, const Wanted& wanted) {
         return;
     }
     const double slower = c.slowest_mhz > 0 && c.fastest_mhz > c.slowest_mhz ? c.fastest_mhz / c.slowest_mhz : 2;
-    std::vector<Change> changes;
+    std::vector<HostChange> changes;
     for (const int cpu : c.online)
         if (wanted.cpu < 0 || cpu == wanted.cpu)
             changes.push_back(knob(fmt::format("/sys/devices/system/cpu/cpu{}/cpufreq/scaling_governor", cpu), "performance"));

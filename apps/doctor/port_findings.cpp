@@ -18,8 +18,8 @@ Finding of(Severity severity, std::string code, std::string found, std::string c
 }
 
 /// ethtool's words for a udev rule, so that the settings are there again when the interface comes.
-Change kept(const std::string& interface, const std::string& what, const std::string& words) {
-    return {Change::Kind::file, fmt::format("/etc/udev/rules.d/60-taktwerk-{}-{}.rules", interface, what),
+HostChange kept(const std::string& interface, const std::string& what, const std::string& words) {
+    return {HostChange::Kind::file, fmt::format("/etc/udev/rules.d/60-taktwerk-{}-{}.rules", interface, what),
             fmt::format("ACTION==\"add|move\", SUBSYSTEM==\"net\", NAME==\"{0}\", RUN+=\"/usr/sbin/ethtool {1}\"\n", interface, words)};
 }
 
@@ -55,11 +55,11 @@ void driver(std::vector<Finding>& out, const PortFacts& p, const Wanted& wanted)
             {"port.driver", Severity::good, 0, fmt::format("{} ({}){}", p.name, which, p.bus.empty() ? ", no hardware" : ""), "", "", ""});
     const auto wait = std::max(e.receive_us.value_or(0), e.adaptive_receive.value_or(false) ? 100u : 0u);
     if (wait > 0) {
-        std::vector<Change> changes;
+        std::vector<HostChange> changes;
         std::string words;
         const auto set = [&](EthernetKnob knob, std::uint32_t value, const char* text) {
             if (const auto now = value_of(e, knob); !now || *now == value) return;
-            changes.push_back({Change::Kind::ethernet, p.name, std::to_string(value), knob});
+            changes.push_back({HostChange::Kind::ethernet, p.name, std::to_string(value), knob});
             words += fmt::format(" {} {}", name(knob), text);
         };
         set(EthernetKnob::adaptive_receive, 0, "off");
@@ -84,18 +84,18 @@ void driver(std::vector<Finding>& out, const PortFacts& p, const Wanted& wanted)
                        fmt::format("each frame wakes the link first: {:.1f} us", wake),
                        "IEEE 802.3, clause 78.5",
                        fmt::format("ethtool --set-eee {} eee off", p.name),
-                       {{Change::Kind::ethernet, p.name, "0", EthernetKnob::energy_efficient},
+                       {{HostChange::Kind::ethernet, p.name, "0", EthernetKnob::energy_efficient},
                         kept(p.name, "eee", fmt::format("--set-eee {} eee off", p.name))}});
     }
 }
 
 void interrupts(std::vector<Finding>& out, const PortFacts& p, const Wanted& wanted) {
     if (wanted.cpu < 0 || p.irqs.empty() || p.irq_cpus.empty() || p.irq_cpus == std::vector<int>{wanted.cpu}) return;
-    std::vector<Change> changes;
+    std::vector<HostChange> changes;
     std::string remedy;
     for (const int irq : p.irqs) {
         const auto path = fmt::format("/proc/irq/{}/smp_affinity_list", irq);
-        changes.push_back({Change::Kind::knob, path, std::to_string(wanted.cpu)});
+        changes.push_back({HostChange::Kind::knob, path, std::to_string(wanted.cpu)});
         remedy += fmt::format("{}echo {} > {}", remedy.empty() ? "" : "\n", wanted.cpu, path);
     }
     out.push_back({"port.interrupts", severity_of(10, wanted.cycle), 10,
@@ -106,18 +106,18 @@ void interrupts(std::vector<Finding>& out, const PortFacts& p, const Wanted& wan
 
 void others(std::vector<Finding>& out, const PortFacts& p, const Wanted& wanted) {
     for (const auto& manager : p.managers) {
-        std::vector<Change> changes;
+        std::vector<HostChange> changes;
         std::string remedy = fmt::format("end it for this interface: {} {}", manager, p.name), then;
         if (manager == "NetworkManager") {
             const auto path = fmt::format("/etc/NetworkManager/conf.d/60-taktwerk-{}.conf", p.name);
             const auto text = fmt::format("[keyfile]\nunmanaged-devices+=interface-name:{}\n", p.name);
-            changes.push_back({Change::Kind::file, path, text});
+            changes.push_back({HostChange::Kind::file, path, text});
             then = "systemctl reload NetworkManager";
             remedy = fmt::format("printf '[keyfile]\\nunmanaged-devices+=interface-name:{}\\n' > {}\nsystemctl reload NetworkManager",
                                  p.name, path);
         } else if (manager == "systemd-networkd") {
             const auto path = fmt::format("/etc/systemd/network/05-taktwerk-{}.network", p.name);
-            changes.push_back({Change::Kind::file, path, fmt::format("[Match]\nName={}\n\n[Link]\nUnmanaged=yes\n", p.name)});
+            changes.push_back({HostChange::Kind::file, path, fmt::format("[Match]\nName={}\n\n[Link]\nUnmanaged=yes\n", p.name)});
             then = "networkctl reload";
             remedy = fmt::format("printf '[Match]\\nName={}\\n\\n[Link]\\nUnmanaged=yes\\n' > {}\nnetworkctl reload", p.name, path);
         }
@@ -139,8 +139,8 @@ void others(std::vector<Finding>& out, const PortFacts& p, const Wanted& wanted)
                        "it asks for routers and neighbours: short frames, 7 to 10 us each",
                        "RFC 4861; 90 bytes at 100 Mbit/s",
                        fmt::format("sysctl net/ipv6/conf/{}/disable_ipv6=1", p.name),
-                       {{Change::Kind::knob, fmt::format("/proc/sys/net/ipv6/conf/{}/disable_ipv6", p.name), "1"},
-                        {Change::Kind::file, fmt::format("/etc/sysctl.d/60-taktwerk-{}-ipv6.conf", p.name),
+                       {{HostChange::Kind::knob, fmt::format("/proc/sys/net/ipv6/conf/{}/disable_ipv6", p.name), "1"},
+                        {HostChange::Kind::file, fmt::format("/etc/sysctl.d/60-taktwerk-{}-ipv6.conf", p.name),
                          fmt::format("net/ipv6/conf/{}/disable_ipv6 = 1\n", p.name)}}});
     if (p.managers.empty() && !p.routed && p.master.empty() && !p.other_master)
         out.push_back({"port.alone", Severity::good, 0, "nobody else uses " + p.name, "", "", ""});

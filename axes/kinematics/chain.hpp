@@ -12,7 +12,7 @@ namespace taktwerk::axes {
 
 using Jacobian = Eigen::Matrix<double, 6, 6>;
 
-struct Chain {
+struct JointChain {
     Frame<double> base;                 ///< the first joint's frame at 0, in the arm's base
     std::array<Frame<double>, 6> link;  ///< behind joint i: the next joint's frame at 0, at last the flange
 

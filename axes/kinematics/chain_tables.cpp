@@ -23,15 +23,15 @@ Frame<double> turned_exactly(std::size_t around, double angle) noexcept {
 
 }  // namespace
 
-Chain chain_of(const WristArmLengths& l) noexcept {
+JointChain chain_of(const WristArmLengths& l) noexcept {
     const Frame<double> tip = turned_exactly(0, -right_angle), back = turned_exactly(0, right_angle);  // z to where y was, and back
     return {
         {},
         {shifted(l.a1, 0, l.c1) * tip, back * shifted(0, 0, l.c2) * tip, back * shifted(l.a2, l.b, l.c3), tip, back, shifted(0, 0, l.c4)}};
 }
 
-Chain chain_of(const DhTable& table, DhConvention convention) noexcept {
-    Chain chain;
+JointChain chain_of(const DhTable& table, DhConvention convention) noexcept {
+    JointChain chain;
     if (convention == DhConvention::modified) {
         const auto before = [](const DhRow& row) {
             return turned_exactly(0, row.alpha) * shifted(row.a, 0, 0) * turned_exactly(2, row.theta);
@@ -51,8 +51,8 @@ Chain chain_of(const DhTable& table, DhConvention convention) noexcept {
     return chain;
 }
 
-Chain deviated(const Chain& chain, const LinkDeviations& by) noexcept {
-    Chain real = chain;
+JointChain deviated(const JointChain& chain, const LinkDeviations& by) noexcept {
+    JointChain real = chain;
     for (std::size_t i = 0; i < 6; ++i) {
         const LinkDeviation& d = by[i];
         real.link[i] = chain.link[i] * shifted(d.shift[0], d.shift[1], d.shift[2]) * turned(0, d.turn[0]) * turned(1, d.turn[1]) *

@@ -46,8 +46,8 @@ struct LinkDeviation {
 };
 using LinkDeviations = std::array<LinkDeviation, 6>;
 
-[[nodiscard]] Chain chain_of(const WristArmLengths& lengths) noexcept;
-[[nodiscard]] Chain chain_of(const DhTable& table, DhConvention convention) noexcept;
-[[nodiscard]] Chain deviated(const Chain& chain, const LinkDeviations& by) noexcept;
+[[nodiscard]] JointChain chain_of(const WristArmLengths& lengths) noexcept;
+[[nodiscard]] JointChain chain_of(const DhTable& table, DhConvention convention) noexcept;
+[[nodiscard]] JointChain deviated(const JointChain& chain, const LinkDeviations& by) noexcept;
 
 }  // namespace taktwerk::axes

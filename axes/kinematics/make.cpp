@@ -89,7 +89,8 @@ struct Checks {
 
 SixArm six_arm(const SixJoints& six) {
     const auto* table = std::get_if<SixJoints::Table>(&six.geometry);
-    const Chain nominal = table != nullptr ? chain_of(table->rows, table->convention) : chain_of(std::get<WristArmLengths>(six.geometry));
+    const JointChain nominal =
+        table != nullptr ? chain_of(table->rows, table->convention) : chain_of(std::get<WristArmLengths>(six.geometry));
     const bool as_written = six.deviations == LinkDeviations{};
     return {as_written ? nominal : deviated(nominal, six.deviations), nominal};
 }

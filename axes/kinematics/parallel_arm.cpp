@@ -10,7 +10,7 @@ namespace taktwerk::axes {
 
 // The plane of the arm has coordinates front and up; angles in it are from `front` towards `up`, about axis 2.
 
-ParallelArm::ParallelArm(const Chain& chain) noexcept {
+ParallelArm::ParallelArm(const JointChain& chain) noexcept {
     const auto at = chain.frames({});
     const auto z = [&](std::size_t joint) { return vector_of(at[joint - 1].axis[2]); };
     const auto point = [&](std::size_t joint) { return vector_of(at[joint - 1].origin); };

@@ -12,7 +12,7 @@ namespace taktwerk::axes {
 class ParallelArm {
 public:
     ParallelArm() = default;
-    explicit ParallelArm(const Chain& chain) noexcept;
+    explicit ParallelArm(const JointChain& chain) noexcept;
 
     /// As WristArm's.
     [[nodiscard]] ArmSolutions solve(const Frame<double>& flange, const Joints& near) const noexcept;

@@ -21,7 +21,7 @@ struct Stand {
     double left = 0;
 };
 
-Stand stand(const Chain& chain, const Frame<double>& flange, const Joints& joints, double reach) noexcept {
+Stand stand(const JointChain& chain, const Frame<double>& flange, const Joints& joints, double reach) noexcept {
     Stand s;
     s.frames = chain.frames(joints);
     const Frame<double>& at = s.frames[6];
@@ -40,14 +40,14 @@ Stand stand(const Chain& chain, const Frame<double>& flange, const Joints& joint
 
 }  // namespace
 
-Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& seed, double reach, int steps) noexcept {
+Refined refine(const JointChain& chain, const Frame<double>& flange, const Joints& seed, double reach, int steps) noexcept {
     Refined best{seed, 0, 0};
     Stand now = stand(chain, flange, seed, reach);
     best.left = now.left;
     double damping = 0;
     while (best.left > aim && best.steps < steps) {
         ++best.steps;
-        Jacobian j = Chain::jacobian(now.frames);
+        Jacobian j = JointChain::jacobian(now.frames);
         j.topRows<3>() /= reach;
         Vector6 step;
         if (damping == 0) {

@@ -22,7 +22,7 @@ struct Refined {
 
 /// Joints of `chain` that bring its flange to `flange`, near `seed`, in `steps` steps at most. Plain Newton steps while they help; where one does not (near a singularity,
 /// or from a far seed), damped ones. `reach` > 0 weighs lengths against angles.
-[[nodiscard]] Refined refine(const Chain& chain, const Frame<double>& flange, const Joints& seed, double reach,
+[[nodiscard]] Refined refine(const JointChain& chain, const Frame<double>& flange, const Joints& seed, double reach,
                              int steps = max_refine_steps) noexcept;
 
 }  // namespace taktwerk::axes

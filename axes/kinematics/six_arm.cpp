@@ -25,7 +25,7 @@ Joints principal_of(Joints joints) noexcept {
 
 }  // namespace
 
-SixArm::SixArm(const Chain& real, const Chain& nominal) noexcept : chain_{real} {
+SixArm::SixArm(const JointChain& real, const JointChain& nominal) noexcept : chain_{real} {
     const auto at = nominal.frames({});
     const bool parallel = std::abs(dot(at[1].axis[2], at[3].axis[2])) > std::numbers::sqrt2 / 2;
     if (parallel) nominal_ = ParallelArm{nominal};

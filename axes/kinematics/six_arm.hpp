@@ -15,7 +15,7 @@ public:
     SixArm() = default;
     /// `real` is the arm, `nominal` the geometry that the closed form is taken from: the same, or what the arm was meant to be. Axes 2 and 4
     /// within 45 degrees of parallel: read as three parallel axes; else as a spherical wrist.
-    SixArm(const Chain& real, const Chain& nominal) noexcept;
+    SixArm(const JointChain& real, const JointChain& nominal) noexcept;
 
     [[nodiscard]] static std::size_t joint_count() noexcept { return 6; }
     [[nodiscard]] static std::array<bool, max_joints> rotary() noexcept { return {true, true, true, true, true, true}; }
@@ -25,7 +25,7 @@ public:
     [[nodiscard]] Frame<S> forward(const std::array<S, max_joints>& joints) const noexcept {
         return chain_.forward(joints);
     }
-    [[nodiscard]] Jacobian jacobian(const Joints& joints) const noexcept { return Chain::jacobian(chain_.frames(joints)); }
+    [[nodiscard]] Jacobian jacobian(const Joints& joints) const noexcept { return JointChain::jacobian(chain_.frames(joints)); }
     /// All ways. Without a closed form: those that Newton's method reached from `near` and from the
     /// neighbour's, each once; there may be more.
     [[nodiscard]] ArmSolutions solve(const Frame<double>& flange, const Joints& near) const noexcept;
@@ -45,7 +45,7 @@ public:
 private:
     [[nodiscard]] ArmSolutions solve_nominal(const Frame<double>& flange, const Joints& near) const noexcept;
 
-    Chain chain_;
+    JointChain chain_;
     std::variant<WristArm, ParallelArm> nominal_;
     double reach_ = 1;
     bool exact_ = false;

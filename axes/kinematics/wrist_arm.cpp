@@ -8,7 +8,7 @@
 
 namespace taktwerk::axes {
 
-WristArm::WristArm(const Chain& chain) noexcept {
+WristArm::WristArm(const JointChain& chain) noexcept {
     const auto at = chain.frames({});
     const auto z = [&](std::size_t joint) { return vector_of(at[joint - 1].axis[2]); };
     const auto point = [&](std::size_t joint) { return vector_of(at[joint - 1].origin); };

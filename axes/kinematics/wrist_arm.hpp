@@ -12,7 +12,7 @@ class WristArm {
 public:
     WristArm() = default;
     /// Axes 1 and 2 must not be parallel, nor axis 4 and axis 2, nor may axes 2 and 3, or 3 and the wrist's centre, be one.
-    explicit WristArm(const Chain& chain) noexcept;
+    explicit WristArm(const JointChain& chain) noexcept;
 
     /// All ways, in the chain's joints, in whatever turn. `near`: what keeps its value where a joint is free (in a singularity).
     [[nodiscard]] ArmSolutions solve(const Frame<double>& flange, const Joints& near) const noexcept;

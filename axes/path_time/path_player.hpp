@@ -16,7 +16,7 @@ public:
     const PathMotion& step(double period) noexcept;
 
     [[nodiscard]] const PathMotion& now() const noexcept { return now_; }
-    /// The part of the curve that now().s lies on (Curve::part_at).
+    /// The part of the curve that now().s lies on (PathCurve::part_at).
     [[nodiscard]] std::uint32_t part() const noexcept { return part_; }
     [[nodiscard]] bool standing() const noexcept { return stretch_ == nullptr || piece_ >= stretch_->count; }
     /// Stretches that came after their place had been passed: the planner was late. It cost speed.
@@ -26,7 +26,7 @@ private:
     void take_offer() noexcept;
 
     StretchExchange& exchange_;
-    const Stretch* stretch_ = nullptr;
+    const TimeStretch* stretch_ = nullptr;
     int piece_ = 0;
     double time_ = 0;      // in the piece
     bool border_ = false;  // between two pieces

@@ -26,7 +26,7 @@ int PathService::border(const StretchProgress& at) const {
 }
 
 void PathService::send(int at_piece, const RunTask& task, bool stands) {
-    Stretch* stretch = exchange_.free_stretch();
+    TimeStretch* stretch = exchange_.free_stretch();
     stretch->id = ++ids_;
     stretch->follows = active_.id;
     stretch->at_piece = at_piece;
@@ -43,7 +43,7 @@ void PathService::send(int at_piece, const RunTask& task, bool stands) {
 }
 
 /// To rest as soon as can be: at the least distance at which a plan is found.
-bool PathService::plan_halt(const Curve& curve, RunTask task, double furthest, const RunShape* former) {
+bool PathService::plan_halt(const PathCurve& curve, RunTask task, double furthest, const RunShape* former) {
     const AlongLimits l = along_limits(curve.at(task.from, CurveSide::after), limits_, 1);
     // From v and a with full jerk: what is left of the acceleration goes, then deceleration comes and goes.
     const double v = task.velocity + std::max(task.acceleration, 0.0) * std::fabs(task.acceleration) / (2 * l.jerk);
@@ -59,7 +59,7 @@ bool PathService::plan_halt(const Curve& curve, RunTask task, double furthest, c
     return false;
 }
 
-PathAnswer PathService::step(const Curve& curve, double final_end, const PathWish& wish) {
+PathAnswer PathService::step(const PathCurve& curve, double final_end, const PathWish& wish) {
     if (pending_) {
         if (exchange_.offering()) return PathAnswer::waiting;
         pending_ = false;
@@ -100,11 +100,11 @@ PathAnswer PathService::step(const Curve& curve, double final_end, const PathWis
         !active_.stands && task.velocity_factor == active_.factor && std::fabs(task.to - active_.to) <= 1e-12 * std::fabs(task.to);
     if ((!at_rest && same) || !(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
     planner_.plan(curve, limits_, task, plan_, former);
-    for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > Stretch::most_pieces; ++i) {
+    for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > TimeStretch::most_pieces; ++i) {
         task.to = task.from + (task.to - task.from) / 2;
         planner_.plan(curve, limits_, task, plan_, former);
     }
-    if (!plan_.found || plan_.pieces.size() > Stretch::most_pieces) {
+    if (!plan_.found || plan_.pieces.size() > TimeStretch::most_pieces) {
         ++skip_;
         return PathAnswer::kept;
     }

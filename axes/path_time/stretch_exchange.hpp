@@ -10,7 +10,7 @@
 
 namespace taktwerk::axes {
 
-struct Stretch {
+struct TimeStretch {
     static constexpr int most_pieces = 4096;
 
     std::uint32_t id = 0;       ///< counts from 1
@@ -32,7 +32,7 @@ public:
     // The planner's side.
 
     /// A stretch to be filled; nothing while the last one offered was neither taken nor refused.
-    [[nodiscard]] Stretch* free_stretch() noexcept {
+    [[nodiscard]] TimeStretch* free_stretch() noexcept {
         return offered_.load(std::memory_order_acquire) == nullptr ? &stretches_[filled_ ^ 1u] : nullptr;
     }
     /// Offers the stretch that free_stretch() gave.
@@ -48,7 +48,7 @@ public:
 
     // The cycle's side.
 
-    [[nodiscard]] const Stretch* offered() const noexcept { return offered_.load(std::memory_order_acquire); }
+    [[nodiscard]] const TimeStretch* offered() const noexcept { return offered_.load(std::memory_order_acquire); }
     /// Takes or refuses the offer; where the cycle is has been told before.
     void answer() noexcept { offered_.store(nullptr, std::memory_order_release); }
     void tell(const StretchProgress& at) noexcept {
@@ -56,9 +56,9 @@ public:
     }
 
 private:
-    std::array<Stretch, 2> stretches_{};
+    std::array<TimeStretch, 2> stretches_{};
     unsigned filled_ = 0;  // the planner's: the other one is free
-    std::atomic<const Stretch*> offered_{nullptr};
+    std::atomic<const TimeStretch*> offered_{nullptr};
     std::atomic<std::uint64_t> progress_{0};
 };
 

@@ -15,6 +15,7 @@
 #include "hmi_bridge/socket/answer_line.hpp"
 #include "hmi_bridge/socket/base64.hpp"
 #include "hmi_bridge/socket/unknown_signal.hpp"
+#include "runtime/run_memory/run_memory.hpp"
 
 namespace taktwerk::hmi {
 namespace {

@@ -22,7 +22,10 @@
 #include "runtime/flight/flight_recorder.hpp"
 #include "runtime/recording/signal_rows.hpp"
 #include "runtime/recording/thinned_read.hpp"
-#include "runtime/run_memory/run_memory.hpp"
+
+namespace taktwerk::runtime {
+class RunMemory;
+}
 
 namespace taktwerk::hmi {
 

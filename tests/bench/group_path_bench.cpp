@@ -80,9 +80,9 @@ void one_cycle(benchmark::State& state) {
     for (auto _ : state) {
         const auto exchange = std::make_unique<StretchExchange>();
         PathPlayer player(*exchange);
-        Stretch* stretch = exchange->free_stretch();
+        TimeStretch* stretch = exchange->free_stretch();
         stretch->id = 1;
-        stretch->count = static_cast<int>(std::min<std::size_t>(plan.pieces.size(), Stretch::most_pieces));
+        stretch->count = static_cast<int>(std::min<std::size_t>(plan.pieces.size(), TimeStretch::most_pieces));
         std::copy_n(plan.pieces.begin(), stretch->count, stretch->pieces.begin());
         exchange->offer();
         do {

@@ -241,7 +241,7 @@ TEST_F(RetainedValues, ADamagedSlotIsSaidAndTheOtherOneUsed) {
     std::string said;
     for (const auto& line : lines_of(machine->machine->retain_notes())) said += line + "\n";
     EXPECT_THAT(said,
-                ::testing::AllOf(::testing::HasSubstr("retain.1: the file is torn or altered"), ::testing::HasSubstr("the other file")));
+                ::testing::AllOf(::testing::HasSubstr("retain.1: the file is torn or altered"), ::testing::HasSubstr("the other one is used")));
 }
 
 TEST_F(RetainedValues, BothSlotsDamagedIsAnAlarmUntilReset) {

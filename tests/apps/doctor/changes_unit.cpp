@@ -16,8 +16,8 @@ using ::testing::IsEmpty;
 
 constexpr const char* record_file = "/var/lib/taktwerk/doctor/applied.json";
 
-std::vector<Change> wanted_by(const HostTree& host, const EthernetPorts& ports) {
-    std::vector<Change> all;
+std::vector<HostChange> wanted_by(const HostTree& host, const EthernetPorts& ports) {
+    std::vector<HostChange> all;
     auto findings = host_findings(host_facts(host.files(), 3), {1ms, 100us, 3});
     auto of_port = port_findings(port_facts(host.files(), ports, "eth1"), {1ms, 100us, 3});
     findings.insert(findings.end(), of_port.begin(), of_port.end());
@@ -124,7 +124,7 @@ TEST_F(Delivered, AFileThatWasThereComesBackToTheByte) {
 
 TEST_F(Delivered, ADriverThatRefusesIsSaidAndLeavesNothingToTakeBack) {
     ports.refuses = true;
-    const auto done = changes().apply({{Change::Kind::ethernet, "eth1", "0", EthernetKnob::receive_us}});
+    const auto done = changes().apply({{HostChange::Kind::ethernet, "eth1", "0", EthernetKnob::receive_us}});
     ASSERT_TRUE(done.ok());
     ASSERT_EQ(done->size(), 1u);
     ASSERT_TRUE(done->front().error.has_value());
@@ -157,9 +157,9 @@ TEST_F(Delivered, ARecordThatIsNoneStopsBoth) {
 }
 
 TEST_F(Delivered, TheRecordReadsBackAsItWasWritten) {
-    const std::vector<AppliedChange> all{{{Change::Kind::file, "/etc/a", "new\n"}, std::nullopt, {"/etc/b"}, "boot-1"},
-                                         {{Change::Kind::knob, "/proc/x", "1"}, "0", {}, "boot-1"},
-                                         {{Change::Kind::ethernet, "eth1", "0", EthernetKnob::send_us}, "33", {}, "boot-1"}};
+    const std::vector<AppliedChange> all{{{HostChange::Kind::file, "/etc/a", "new\n"}, std::nullopt, {"/etc/b"}, "boot-1"},
+                                         {{HostChange::Kind::knob, "/proc/x", "1"}, "0", {}, "boot-1"},
+                                         {{HostChange::Kind::ethernet, "eth1", "0", EthernetKnob::send_us}, "33", {}, "boot-1"}};
     const auto read = read_record(record_text(all));
     ASSERT_TRUE(read.ok());
     ASSERT_EQ(read->size(), 3u);
@@ -177,7 +177,7 @@ TEST_F(Delivered, TheRecordReadsBackAsItWasWritten) {
 // Interrupt 124 may be another device's after a restart.
 TEST_F(Delivered, AnInterruptsNumberMeansNothingAfterARestart) {
     host.put("/proc/irq/124/smp_affinity_list", "0\n");
-    ASSERT_TRUE(changes().apply({{Change::Kind::knob, "/proc/irq/124/smp_affinity_list", "3"}}).ok());
+    ASSERT_TRUE(changes().apply({{HostChange::Kind::knob, "/proc/irq/124/smp_affinity_list", "3"}}).ok());
     host.put("/proc/sys/kernel/random/boot_id", "boot-2\n");
     ASSERT_TRUE(changes().revert().ok());
     EXPECT_EQ(host.text("/proc/irq/124/smp_affinity_list"), "3\n");

@@ -245,7 +245,7 @@ TEST(DoctorPort, InterruptsThatWaitAndALinkThatSleepsAreChangedByEthtoolsWords) 
     EXPECT_EQ(waits->cost_us, 60);
     EXPECT_EQ(waits->remedy, "ethtool -C eth1 rx-usecs 0");
     ASSERT_EQ(waits->changes.size(), 2u);  // now, and when the interface comes again
-    EXPECT_EQ(waits->changes[0].kind, Change::Kind::ethernet);
+    EXPECT_EQ(waits->changes[0].kind, HostChange::Kind::ethernet);
     EXPECT_EQ(waits->changes[0].value, "0");
     EXPECT_EQ(waits->changes[1].target, "/etc/udev/rules.d/60-taktwerk-eth1-coalescing.rules");
     const auto* eee = find(all, "port.eee");

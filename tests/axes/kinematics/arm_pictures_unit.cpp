@@ -82,7 +82,7 @@ private:
 Pose pose_at(const PublishedArm& arm, const Joints& axes) { return made(arm).forward(axes, {}).pose; }
 
 /// Origins of the joints' frames at these angles of the arm's own.
-std::vector<Point> origins(const Chain& chain, const Joints& angles) {
+std::vector<Point> origins(const JointChain& chain, const Joints& angles) {
     std::vector<Point> points;
     for (const Frame<double>& f : chain.frames(angles)) points.push_back(vector_of(f.origin));
     return points;
@@ -90,7 +90,7 @@ std::vector<Point> origins(const Chain& chain, const Joints& angles) {
 
 std::string six_joints_with_wrist() {
     const WristArmLengths l{.a1 = .070, .a2 = -.050, .c1 = .352, .c2 = .360, .c3 = .380, .c4 = .065};
-    const Chain chain = chain_of(l);
+    const JointChain chain = chain_of(l);
     const auto skeleton = [&](const Joints& q) {
         std::vector<Point> p = origins(chain, q);
         // Past axis 3 the offset first, then along the forearm.
@@ -127,7 +127,7 @@ std::string six_joints_with_wrist() {
 }
 
 std::string three_parallel_axes() {
-    const Chain chain = chain_of(ur5e_table().rows, DhConvention::classic);
+    const JointChain chain = chain_of(ur5e_table().rows, DhConvention::classic);
     ArmPicture picture{View::side, -.95, .45, -.1, 1.15};
     picture.ground({{-.15, 0, 0}, {.15, 0, 0}});
     const Joints zero{}, bent = degrees({0, -110, 80, -60, -90, 0});

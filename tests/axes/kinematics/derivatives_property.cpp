@@ -52,7 +52,7 @@ void expect_complex_step(const Arm& arm, PublishedArm published) {
     }
 }
 
-Chain chain_of_arm(const PublishedArm& arm) {
+JointChain chain_of_arm(const PublishedArm& arm) {
     const auto& six = std::get<SixJoints>(arm.description.arm);
     const auto* table = std::get_if<SixJoints::Table>(&six.geometry);
     return deviated(table != nullptr ? chain_of(table->rows, table->convention) : chain_of(std::get<WristArmLengths>(six.geometry)),
