@@ -15,7 +15,7 @@ struct AlongLimits {
     double velocity, acceleration, deceleration, jerk;
 };
 
-[[nodiscard]] inline AlongLimits along_limits(const PathCurvePoint& p, std::span<const PathAxisLimits> limits,
+[[nodiscard]] inline AlongLimits along_limits(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits,
                                               double velocity_factor) noexcept {
     AlongLimits l{p.path.velocity * velocity_factor, p.path.acceleration, p.path.deceleration, p.path.jerk};
     for (std::size_t i = 0; i < limits.size(); ++i) {

@@ -26,7 +26,7 @@ struct PathAxisLimits {
 };
 
 /// dq/ds, d2q/ds2, d3q/ds3 of each axis at a point, and the path's own limits there.
-struct PathCurvePoint {
+struct TimedCurvePoint {
     std::array<double, max_path_axes> first{};
     std::array<double, max_path_axes> second{};
     std::array<double, max_path_axes> third{};
@@ -38,18 +38,18 @@ enum class CurveSide : std::uint8_t { before, after };
 
 /// A path that is twice continuously differentiable between begin() and end(): q, q' and q'' are continuous, q''' may jump at breakpoints.
 /// Pure: the same s gives the same bits. Any thread, no allocation.
-class PathCurve {
+class TimedCurve {
 public:
-    PathCurve() = default;
-    PathCurve(const PathCurve&) = default;
-    PathCurve& operator=(const PathCurve&) = default;
-    virtual ~PathCurve() = default;
+    TimedCurve() = default;
+    TimedCurve(const TimedCurve&) = default;
+    TimedCurve& operator=(const TimedCurve&) = default;
+    virtual ~TimedCurve() = default;
 
     [[nodiscard]] virtual int axes() const noexcept = 0;
     [[nodiscard]] virtual double begin() const noexcept = 0;
     [[nodiscard]] virtual double end() const noexcept = 0;
 
-    [[nodiscard]] virtual PathCurvePoint at(double s, CurveSide side) const noexcept = 0;
+    [[nodiscard]] virtual TimedCurvePoint at(double s, CurveSide side) const noexcept = 0;
 
     /// The first place behind `s` at which q''' or a limit jumps; end() where there is none.
     [[nodiscard]] virtual double next_break(double s) const noexcept = 0;

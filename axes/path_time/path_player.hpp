@@ -16,7 +16,7 @@ public:
     const PathMotion& step(double period) noexcept;
 
     [[nodiscard]] const PathMotion& now() const noexcept { return now_; }
-    /// The part of the curve that now().s lies on (PathCurve::part_at).
+    /// The part of the curve that now().s lies on (TimedCurve::part_at).
     [[nodiscard]] std::uint32_t part() const noexcept { return part_; }
     [[nodiscard]] bool standing() const noexcept { return stretch_ == nullptr || piece_ >= stretch_->count; }
     /// Stretches that came after their place had been passed: the planner was late. It cost speed.

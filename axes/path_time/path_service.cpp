@@ -43,7 +43,7 @@ void PathService::send(int at_piece, const RunTask& task, bool stands) {
 }
 
 /// To rest as soon as can be: at the least distance at which a plan is found.
-bool PathService::plan_halt(const PathCurve& curve, RunTask task, double furthest, const RunShape* former) {
+bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former) {
     const AlongLimits l = along_limits(curve.at(task.from, CurveSide::after), limits_, 1);
     // From v and a with full jerk: what is left of the acceleration goes, then deceleration comes and goes.
     const double v = task.velocity + std::max(task.acceleration, 0.0) * std::fabs(task.acceleration) / (2 * l.jerk);
@@ -59,7 +59,7 @@ bool PathService::plan_halt(const PathCurve& curve, RunTask task, double furthes
     return false;
 }
 
-PathAnswer PathService::step(const PathCurve& curve, double final_end, const PathWish& wish) {
+PathAnswer PathService::step(const TimedCurve& curve, double final_end, const PathWish& wish) {
     if (pending_) {
         if (exchange_.offering()) return PathAnswer::waiting;
         pending_ = false;

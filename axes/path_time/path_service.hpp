@@ -36,7 +36,7 @@ public:
 
     /// `final_end`: up to there the curve will not change any more. A curve that ends there has to be the one of the step before as far as
     /// that one's final end.
-    PathAnswer step(const PathCurve& curve, double final_end, const PathWish& wish);
+    PathAnswer step(const TimedCurve& curve, double final_end, const PathWish& wish);
 
     /// The end at rest of what runs or is on its way.
     [[nodiscard]] double end() const noexcept { return active_.to; }
@@ -54,7 +54,7 @@ private:
     };
 
     [[nodiscard]] int border(const StretchProgress& at) const;
-    bool plan_halt(const PathCurve& curve, RunTask task, double furthest, const RunShape* former);
+    bool plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former);
     void send(int at_piece, const RunTask& task, bool stands);
 
     std::vector<PathAxisLimits> limits_;

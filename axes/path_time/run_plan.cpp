@@ -24,7 +24,7 @@ class PeakUse {
 public:
     explicit PeakUse(std::size_t axes) : axes_(axes) {}
 
-    void look(const PathCurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor, const PathMotion& m) {
+    void look(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor, const PathMotion& m) {
         const double v = m.velocity, a = m.acceleration, j = m.jerk;
         std::size_t n = 0;
         now_[n++] = v / (p.path.velocity * velocity_factor);
@@ -73,7 +73,7 @@ void LimitUse::widen(const LimitUse& other) noexcept {
     jerk = std::max(jerk, other.jerk);
 }
 
-LimitUse limit_use(const PathCurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor, const PathMotion& m) noexcept {
+LimitUse limit_use(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor, const PathMotion& m) noexcept {
     const double v = m.velocity, a = m.acceleration, j = m.jerk;
     LimitUse use{v / (p.path.velocity * velocity_factor), std::max(a / p.path.acceleration, -a / p.path.deceleration),
                  std::fabs(j) / p.path.jerk};
@@ -207,7 +207,7 @@ void RunPlanner::add_cell(int cell, const RunTask& task) {
     const CellLimits own = cell_limits_[c];
     for (int k = 0; k <= 2; ++k) {
         const double x = 0.5 * k;
-        const PathCurvePoint p = curve_->at(k == 2 ? nodes_[c + 1] : begin + x * length, k == 2 ? CurveSide::before : CurveSide::after);
+        const TimedCurvePoint p = curve_->at(k == 2 ? nodes_[c + 1] : begin + x * length, k == 2 ? CurveSide::before : CurveSide::after);
         problem_.add_point({cell, x, length * (k == 1 ? 4 : 1) / 6});
         // With the end of the cell before, unless something jumps here.
         // The state at the beginning, and with it the middle of the first cell, are as they are.
@@ -270,7 +270,7 @@ void RunPlanner::first_guess(const RunTask& task) {
     middles_.assign(n, 0);
     for (std::size_t i = 0; i < n; ++i) {
         const double s = (nodes_[i] + nodes_[i + 1]) / 2;
-        const PathCurvePoint p = curve_->at(s, CurveSide::after);
+        const TimedCurvePoint p = curve_->at(s, CurveSide::after);
         const AlongLimits l = along_limits(p, limits_, task.velocity_factor);
         double cap = l.velocity * l.velocity;
         for (std::size_t k = 0; k < limits_.size(); ++k) {
@@ -428,7 +428,7 @@ void RunPlanner::make_pieces(RunPlan& out) {
     for (int i = 0; i <= n; ++i) out.shape.squares.push_back(problem_.node(i, middles_));
 }
 
-void RunPlanner::plan(const PathCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
+void RunPlanner::plan(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
                       const RunShape* former) {
     curve_ = &curve;
     limits_ = limits;

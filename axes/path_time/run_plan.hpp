@@ -23,7 +23,7 @@ struct LimitUse {
 };
 
 /// The use of all limits at a point of the curve by a motion along it.
-[[nodiscard]] LimitUse limit_use(const PathCurvePoint& point, std::span<const PathAxisLimits> limits, double velocity_factor,
+[[nodiscard]] LimitUse limit_use(const TimedCurvePoint& point, std::span<const PathAxisLimits> limits, double velocity_factor,
                                  const PathMotion& motion) noexcept;
 
 struct RunTask {
@@ -59,7 +59,7 @@ class RunPlanner {
 public:
     /// Fastest along the curve. `limits`: one per axis of the curve. From a moving state: `former` is the plan that has this state at one of its
     /// nodes; it is where the search begins. Not found: the state cannot be left better than the former plan does, which goes on.
-    void plan(const PathCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
+    void plan(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
               const RunShape* former = nullptr);
 
 private:
@@ -84,7 +84,7 @@ private:
     double rest_square(double at, double length, bool begins, double velocity_factor) const;
     void make_pieces(RunPlan& out);
 
-    const PathCurve* curve_ = nullptr;
+    const TimedCurve* curve_ = nullptr;
     std::span<const PathAxisLimits> limits_;
     std::vector<double> breaks_, stations_, sizes_, nodes_, middles_;
     std::vector<CellLimits> cell_limits_;  // what share of each limit a cell may use

@@ -15,9 +15,9 @@ namespace taktwerk::axes {
 class GridOracle {
 public:
     /// Seconds from rest to rest over [from, to] in `steps` steps.
-    static double time(const PathCurve& curve, std::span<const PathAxisLimits> limits, double from, double to, int steps) {
+    static double time(const TimedCurve& curve, std::span<const PathAxisLimits> limits, double from, double to, int steps) {
         const double h = (to - from) / steps;
-        std::vector<PathCurvePoint> points;
+        std::vector<TimedCurvePoint> points;
         for (int i = 0; i <= steps; ++i)
             points.push_back(curve.at(from + (to - from) * i / steps, i == steps ? CurveSide::before : CurveSide::after));
         std::vector<double> most(points.size(), 0);
@@ -47,13 +47,13 @@ private:
         double low, high;
     };
 
-    static double cap(const PathCurvePoint& p, std::span<const PathAxisLimits> limits) {
+    static double cap(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits) {
         double v = p.path.velocity;
         for (std::size_t i = 0; i < limits.size(); ++i) v = std::min(v, limits[i].velocity / std::max(std::fabs(p.first[i]), 1e-12));
         return v * v;
     }
 
-    static Range accelerations(const PathCurvePoint& p, std::span<const PathAxisLimits> limits, double square) {
+    static Range accelerations(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits, double square) {
         Range r{-p.path.deceleration, p.path.acceleration};
         for (std::size_t i = 0; i < limits.size(); ++i) {
             const double given = p.second[i] * square, q = p.first[i], most = limits[i].acceleration;

@@ -45,10 +45,10 @@ inline Jet angle(const Jet& y, const Jet& x) {
 
 struct PathAxes {
     std::array<double, max_path_axes> q{};
-    PathCurvePoint point{};
+    TimedCurvePoint point{};
 };
 
-class PathCurve : public PathCurve {
+class PathCurve : public TimedCurve {
 public:
     enum class Machine { cartesian, arm };
     explicit PathCurve(const Path& path, int axes = 3, Machine machine = Machine::cartesian)
@@ -78,7 +78,7 @@ public:
         const double reach = std::hypot(at[0] + in_front, at[1]);
         return std::min(own, 0.2 * std::max(1.0, std::min({reach, upper + lower - reach, reach - (upper - lower)})));
     }
-    [[nodiscard]] PathCurvePoint at(double s, CurveSide side) const noexcept override { return axes_at(s, side).point; }
+    [[nodiscard]] TimedCurvePoint at(double s, CurveSide side) const noexcept override { return axes_at(s, side).point; }
 
     [[nodiscard]] PathAxes axes_at(double s, CurveSide side) const noexcept { return axes_on(section_at(s, side), s); }
     [[nodiscard]] std::uint32_t part_at(double s) const noexcept override { return static_cast<std::uint32_t>(path_.index_at(s)); }
