@@ -77,7 +77,7 @@ order. *failed, then came back*: the bring-up ended with an error that says what
 ended, which stopped within its time all the same.
 
 An endless loop in a program is the same in virtual time as no time at all, so it is not drawn here: `tests/apps/master_death_machine.cpp` (in the cycle: the watch
-ends the process, the drives stop by themselves) and `tests/runtime/slow_task_unit.cpp` (in a slower task: `task_overrun`) have it.
+ends the process, the drives stop by themselves) and `tests/runtime/task_threads_machine.cpp` (in a slower task: `task_watchdog`) have it.
 
 )";
 
