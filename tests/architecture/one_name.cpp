@@ -10,7 +10,7 @@ namespace taktwerk::architecture {
 Violations check_names_stand_once(const std::vector<SourceFile>& files) {
     static const std::regex opens(R"(^(?:inline )?namespace ?([\w:]*) ?\{)");
     static const std::regex closes(R"(^\}\s*// namespace.*)");
-    static const std::regex named(R"(^(?:struct|class|enum class|enum) (\w+)(?: final)?(?: ?:[^;]*)? ?\{.*)");
+    static const std::regex named(R"(^(?:struct|class|enum class|enum) (\w+)(?: final)?(?: : [^;]*)? \{.*)");
     std::map<std::string, std::string> seen;
     Violations violations;
     for (const auto& file : files) {
