@@ -47,7 +47,8 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", std::string("taktwerk ") + sdk_version);
     app.require_subcommand(1);
     app.footer(
-        "Exit codes: 0 ok, 1 fit with warnings (doctor), 2 usage, 3 bad file, 4 bus, 5 refused by the machine, 6 no running machine, 7 no real time, 8 ended with an "
+        "Exit codes: 0 ok, 1 fit with warnings (doctor), 2 usage, 3 bad file, 4 bus, 5 refused by the machine, 6 no running machine, 7 no "
+        "real time, 8 ended with an "
         "alarm, 9 could not end, 10 a replay differs");
     Action action;
     add_run(app, action);

@@ -216,7 +216,8 @@ inline constexpr std::array<AlarmInfo, 27> machine_alarms{{
      "The task has not ended within its watchdog time ({a} ms since its release, allowed {b} ms): its program was stopped",
      "任务未在看门狗时间内结束(自释放起 {a} 毫秒,允许 {b} 毫秒):其程序已被停止",
      "An endless loop, a wait or a long computation in this task, or other work kept it from the processor",
-     "Mend the task, do its work in pieces, or give it a longer `watchdog`; reset, then start the program. While the task still has not come "
+     "Mend the task, do its work in pieces, or give it a longer `watchdog`; reset, then start the program. While the task still has not "
+     "come "
      "back its program cannot be started: end the run and start it again",
      ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops it"},
     {id(MachineAlarm::task_late), "task_late",

@@ -191,7 +191,8 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                 error.what = "its program does not run, or the machine is shutting down: nobody would see the press";
                 error.remedy = "Start the program, then press again.";
             } else if (kind == CommandKind::program_start && answer.error == axes::ErrorId::state_forbids) {
-                error.what = "the program has not ended yet: its stop() is still to come, or a task of it has not come back (its alarm names it)";
+                error.what =
+                    "the program has not ended yet: its stop() is still to come, or a task of it has not come back (its alarm names it)";
                 error.remedy = "Wait for it; where it never comes back, end the run, mend the program and start it again.";
             } else if (kind == CommandKind::program_start) {
                 error.what = "the program is in fault, or the machine is shutting down";

@@ -111,9 +111,10 @@ private:
     void check_times(const TaskConfig& task) {
         const auto where = fmt::format("programs.{}.tasks.{}", task.program, task.name);
         if (task.divisor == 1 && (task.watchdog || task.priority))
-            problems_.add("task.base", fmt::format("{}.{}", where, task.watchdog ? "watchdog" : "priority"),
-                          "a task that runs in each cycle runs inside the cycle, on its thread: it has no watchdog and no priority of its own",
-                          "remove it (`watch:` says when a cycle that is too long stops the machine), or give the task a longer `every`");
+            problems_.add(
+                "task.base", fmt::format("{}.{}", where, task.watchdog ? "watchdog" : "priority"),
+                "a task that runs in each cycle runs inside the cycle, on its thread: it has no watchdog and no priority of its own",
+                "remove it (`watch:` says when a cycle that is too long stops the machine), or give the task a longer `every`");
         else if (task.watchdog && *task.watchdog != Duration{} && *task.watchdog < config_.cycle)
             problems_.add("task.watchdog", where + ".watchdog", "it is shorter than the machine's cycle, in which it is counted",
                           "give it a cycle or more, or 0 ms for no limit");

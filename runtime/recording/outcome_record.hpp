@@ -23,8 +23,8 @@ inline constexpr RecordChannel wire_channel = 21;
 
 /// RecordingInfo::channels of a recording of a machine: the name of each channel at its number.
 [[nodiscard]] inline std::vector<std::string> inbox_channels() {
-    return {"",        "tick",       "frame",      "command", "object", "departure", "sample",    "modbus_request", "modbus_word",
-            "level",   "half_frame", "refused",    "link",    "ring",   "disk",      "setpoints", "points",         "wish",
+    return {"",        "tick",       "frame",      "command", "object", "departure", "sample",     "modbus_request", "modbus_word",
+            "level",   "half_frame", "refused",    "link",    "ring",   "disk",      "setpoints",  "points",         "wish",
             "outputs", "call",       "start_file", "wire",    "hook",   "slow",      "task_times", "faults",         "asked"};
 }
 

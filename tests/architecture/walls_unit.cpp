@@ -125,25 +125,26 @@ TEST(OwnedIncludes, OnTheMotionSideOnlyDriveCodeAndSimulationSeeABus) {
 }
 
 TEST(OwnedIncludes, LibrariesStayWhereTheyAreWrapped) {
-    EXPECT_THAT(check_owned_includes({
-                    {"runtime/snapshot.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
-                    {"apps/run.cpp", "#include <yaml-cpp/yaml.h>\n"},
-                    {"ecat/coe/sdo.cpp", "#include <pugixml.hpp>\n"},
-                    {"runtime/cycle.cpp", "#include <modbus/modbus-tcp.h>\n"},
-                    {"hmi_bridge/socket/door.cpp", "#include <boost/asio.hpp>\n"},
-                    {"hmi_bridge/web/page_message.cpp", "#include <boost/beast.hpp>\n"},
-                    {"apps/hmi/hmi.cpp", "#include \"hmi_bridge/web/server/feed.hpp\"\n"},
-                    {"hmi_bridge/web/audit_log.cpp", "#include <sodium.h>\n"},
-                    {"runtime/bundle/trust.cpp", "#include <sodium.h>\n"},
-                    {"runtime/retain/kept_text.cpp", "#include <nlohmann/json.hpp>\n"},
-                    {"hmi_bridge/socket/json_history.cpp", "#include <sqlite3.h>\n"},
-                    {"runtime/scope_file/scope_file.cpp", "#include <zstd.h>\n"},
-                    {"core/ring.hpp", "#include <gtest/gtest_prod.h>\n"},
-                    {"fb_library/groups/move_linear.hpp", "#include <Eigen/Core>\n"},
-                }),
-                ElementsAre(HasSubstr("LCM"), HasSubstr("yaml-cpp"), HasSubstr("pugixml"), HasSubstr("libmodbus"), HasSubstr("Boost"),
-                            HasSubstr("Boost"), HasSubstr("Boost"), HasSubstr("libsodium"), HasSubstr("libsodium"),
-                             HasSubstr("nlohmann-json"), HasSubstr("SQLite"), HasSubstr("zstd"), HasSubstr("a test library"), HasSubstr("Eigen")));
+    EXPECT_THAT(
+        check_owned_includes({
+            {"runtime/snapshot.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
+            {"apps/run.cpp", "#include <yaml-cpp/yaml.h>\n"},
+            {"ecat/coe/sdo.cpp", "#include <pugixml.hpp>\n"},
+            {"runtime/cycle.cpp", "#include <modbus/modbus-tcp.h>\n"},
+            {"hmi_bridge/socket/door.cpp", "#include <boost/asio.hpp>\n"},
+            {"hmi_bridge/web/page_message.cpp", "#include <boost/beast.hpp>\n"},
+            {"apps/hmi/hmi.cpp", "#include \"hmi_bridge/web/server/feed.hpp\"\n"},
+            {"hmi_bridge/web/audit_log.cpp", "#include <sodium.h>\n"},
+            {"runtime/bundle/trust.cpp", "#include <sodium.h>\n"},
+            {"runtime/retain/kept_text.cpp", "#include <nlohmann/json.hpp>\n"},
+            {"hmi_bridge/socket/json_history.cpp", "#include <sqlite3.h>\n"},
+            {"runtime/scope_file/scope_file.cpp", "#include <zstd.h>\n"},
+            {"core/ring.hpp", "#include <gtest/gtest_prod.h>\n"},
+            {"fb_library/groups/move_linear.hpp", "#include <Eigen/Core>\n"},
+        }),
+        ElementsAre(HasSubstr("LCM"), HasSubstr("yaml-cpp"), HasSubstr("pugixml"), HasSubstr("libmodbus"), HasSubstr("Boost"),
+                    HasSubstr("Boost"), HasSubstr("Boost"), HasSubstr("libsodium"), HasSubstr("libsodium"), HasSubstr("nlohmann-json"),
+                    HasSubstr("SQLite"), HasSubstr("zstd"), HasSubstr("a test library"), HasSubstr("Eigen")));
     EXPECT_NO_VIOLATIONS(check_owned_includes({
         {"hmi_bridge/lcm/publisher.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
         {"hmi_bridge/history/history_store.cpp", "#include <sqlite3.h>\n"},

@@ -614,11 +614,13 @@ TEST(UsedFiles, AreThoseOfDrivesDevicesCamsAndImagesEachOnce) {
         << "two slaves have one drive file; its terminal has none; programs were not asked for";
     EXPECT_EQ(loaded.files.back().kind, UsedFile::Kind::image);
     const auto based = must_load(source + "/config/machines/any-servo.yaml");
-    EXPECT_TRUE(std::any_of(based.files.begin(), based.files.end(), [](const UsedFile& file) { return file.written == "cia402.alarms.yaml"; }));
+    EXPECT_TRUE(
+        std::any_of(based.files.begin(), based.files.end(), [](const UsedFile& file) { return file.written == "cia402.alarms.yaml"; }));
 }
 
 TEST(StateDirectory, TakesTheRelativeDirectoriesOfWhatIsKept) {
-    const std::string machine = "version: 1\nname: m\ncycle: 1 ms\nbus: { interface: eth9, slaves: [{ name: io, terminal: { inputs: 8 } }] }\n";
+    const std::string machine =
+        "version: 1\nname: m\ncycle: 1 ms\nbus: { interface: eth9, slaves: [{ name: io, terminal: { inputs: 8 } }] }\n";
     const auto path = written("state.yaml", machine + "retain: kept\nevidence: { directory: seen }\nhistory: { directory: /var/log/m }\n");
     auto options = without_programs();
     const auto beside = must_load(path, options);

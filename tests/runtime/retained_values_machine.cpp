@@ -240,8 +240,8 @@ TEST_F(RetainedValues, ADamagedSlotIsSaidAndTheOtherOneUsed) {
     EXPECT_GT(value("found"), 0);
     std::string said;
     for (const auto& line : lines_of(machine->machine->retain_notes())) said += line + "\n";
-    EXPECT_THAT(said,
-                ::testing::AllOf(::testing::HasSubstr("retain.1: the file is torn or altered"), ::testing::HasSubstr("the other one is used")));
+    EXPECT_THAT(said, ::testing::AllOf(::testing::HasSubstr("retain.1: the file is torn or altered"),
+                                       ::testing::HasSubstr("the other one is used")));
 }
 
 TEST_F(RetainedValues, BothSlotsDamagedIsAnAlarmUntilReset) {
