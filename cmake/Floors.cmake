@@ -119,7 +119,7 @@ function(taktwerk_tests folder)
       taktwerk_test_headers(${binary})
       taktwerk_compile_together(${binary} ${TAKTWERK_UNITY})
       add_test(NAME ${binary} COMMAND ${binary} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
-      set(patience 300)
+      set(patience 600)
       if(TAKTWERK_SANITIZE)
         set(patience 900)  # a sanitized machine takes several times as long
       endif()

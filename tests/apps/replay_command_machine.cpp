@@ -173,9 +173,10 @@ TEST_F(ReplayCommand, AMachineFileThatIsGoneIsAskedFor) {
     const auto machine = altered("demo.yaml", "cycle: 1 ms", "cycle: 1 ms");
     (void)command({"run", machine, "--virtual-time", "--duration", "2s", "--quiet", "--record", path("run.twrec")});
     ASSERT_TRUE(std::filesystem::exists(path("run.twrec")));
-    std::filesystem::rename(machine, path("moved.yaml"));
+    const auto moved = (std::filesystem::path(machine).parent_path() / "moved.yaml").string();  // beside it: its drives are named from there
+    std::filesystem::rename(machine, moved);
     EXPECT_THAT(command({"replay", path("run.twrec")}).text, HasSubstr("taktwerk replay RECORDING MACHINE.yaml"));
-    EXPECT_EQ(command({"replay", path("run.twrec"), path("moved.yaml"), "--quiet"}).code, exit_ok);
+    EXPECT_EQ(command({"replay", path("run.twrec"), moved, "--quiet"}).code, exit_ok);
 }
 
 TEST_F(ReplayCommand, WhatIsNoRecordingSaysWhatIsWrong) {
