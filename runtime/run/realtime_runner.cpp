@@ -70,12 +70,19 @@ void RealtimeRunner::modbus_thread(std::size_t device) {
     while (clock_.now() < until && machine_.end_modbus(device, clock_.now())) {}
 }
 
-void RealtimeRunner::watch_thread() {
-    // Above the tasks: it has to get a processor while one of them computes without an end. Refused: so were theirs.
+// Above the tasks: it has to get a processor while one of them computes without an end. Refused: so were theirs.
+void RealtimeRunner::guard_thread() {
     if (request_.priority && *request_.priority > 1) (void)set_fifo_priority(*request_.priority - 1);
-    bool was_stuck = false, given_up = false;
     while (!all_home_.load(std::memory_order_acquire)) {
         tasks_.look(clock_.now());
+        clock_.sleep_until(clock_.now() + watch_period);
+    }
+}
+
+// An ordinary thread: of a processor that a hung cycle holds the kernel leaves a share to these alone, and nothing to a real-time priority below the cycle's.
+void RealtimeRunner::watch_thread() {
+    bool was_stuck = false, given_up = false;
+    while (!all_home_.load(std::memory_order_acquire)) {
         const auto hopeless = end_watch_.look(clock_.now());
         const auto& stuck = end_watch_.stuck();
         if (stuck.has_value() != was_stuck && on_stuck) on_stuck(stuck ? &*stuck : nullptr);
@@ -106,6 +113,7 @@ Result<RealtimeReport> RealtimeRunner::start() {
     beside_.emplace_back([this] { beside([this](Instant) { machine_.service_programs(); }); });
     beside_.emplace_back([this] { beside([this](Instant now) { machine_.service_disk(now); }); });
     for (std::size_t i = 0; i < machine_.modbus_count(); ++i) beside_.emplace_back([this, i] { modbus_thread(i); });
+    if (machine_.slow_task_count() > 0) guard_ = std::thread{[this] { guard_thread(); }};
     watch_ = std::thread{[this] { watch_thread(); }};
     return whole;
 }
@@ -181,7 +189,8 @@ void RealtimeRunner::finish() {
         if (thread.joinable()) thread.join();
     beside_.clear();
     all_home_.store(true, std::memory_order_release);
-    if (watch_.joinable()) watch_.join();
+    for (auto* thread : {&guard_, &watch_})
+        if (thread->joinable()) thread->join();
 }
 
 }  // namespace taktwerk::runtime

@@ -7,8 +7,8 @@
 //   programs   start() and stop() of programs: foreign code
 //   disk       positions, until they are on the disk
 //   modbus     one for each Modbus TCP device: connecting, asking, waiting for its answer
-//   watch      looks whether the cycle advances, whether an end that was asked for comes (end_watch.hpp), whether a task computes without an end, and at
-//              the cycle's page faults (fault_watch.hpp); its priority is right below the cycle's
+//   guard      where there are slower tasks: takes its priority from one that computes without an end; its own is right below the cycle's
+//   watch      looks whether the cycle advances, whether an end that was asked for comes (end_watch.hpp), and at the cycle's page faults (fault_watch.hpp)
 
 #include <atomic>
 #include <functional>
@@ -66,6 +66,7 @@ private:
     void cycle_thread();
     void modbus_thread(std::size_t device);
     void beside(const std::function<void(Instant)>& work);
+    void guard_thread();
     void watch_thread();
     void service();
     [[nodiscard]] bool asked(const std::function<bool(Instant)>& keep_on);
@@ -83,7 +84,7 @@ private:
     EndWatch end_watch_;
     FaultWatch fault_watch_;
     std::atomic<bool> stop_{false}, ready_{false}, cycle_running_{false}, all_home_{false};
-    std::thread cycle_, watch_;
+    std::thread cycle_, guard_, watch_;
     TaskThreads tasks_;
     std::vector<std::thread> beside_;
     Instant next_service_{};

@@ -278,6 +278,15 @@ TEST_F(Stopping, AnEndlessLoopInABaseTaskIsNamedToEveryClientAndEndsInThePromise
     EXPECT_THAT(run.text(), HasSubstr("was told to end and cannot"));
 }
 
+// A hung cycle holds its processor at its priority, and the kernel leaves ordinary threads alone a share of it (sched(7)): so whoever tells it and ends
+// the process may have no real-time priority below the cycle's.
+TEST_F(Stopping, OnOneProcessorAnEndlessLoopInABaseTaskIsToldAndEndsAsWell) {
+    Child run({"taskset", "-c", "0", taktwerk, "run", dying(2)});
+    EXPECT_TRUE(run.says("STUCK", 60s)) << run.text();
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(60s), exit_hung) << run.text();
+}
+
 TEST_F(Stopping, AnEndlessSlowerTaskDoesNotOutliveTheEnd) {
     Child run({taktwerk, "run", dying(2, 4)});
     ASSERT_TRUE(run.says("not finished at its next release", 60s)) << run.text();

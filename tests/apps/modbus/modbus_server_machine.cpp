@@ -189,7 +189,8 @@ TEST(ModbusServerMachine, AVisualisationReadsWhatTheMachineIs) {
         const auto before = view.heartbeat();
         EXPECT_TRUE(Visualisation::until([&] { return view.heartbeat() > before + 20; }));
         EXPECT_EQ(view.input(8), 6000) << "6 bar, of 16 bar in 16000 steps";
-        EXPECT_EQ(view.input(9), 1) << "it is good, and no alarm stands";
+        // A wake-up that this computer made late is an alarm as well, which goes by itself.
+        EXPECT_TRUE(Visualisation::until([&] { return view.input(9) == 1; })) << "it is good, and no alarm stands: " << machine.run->text();
         EXPECT_EQ(view.input(2), 0) << "manual";
         EXPECT_TRUE(machine.command({{"cmd", "simulate"}, {"line", "input pressure 8bar"}}));
         EXPECT_TRUE(Visualisation::until([&] { return view.input(8) == 8000; }));
