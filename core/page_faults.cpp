@@ -1,7 +1,6 @@
 #include "core/page_faults.hpp"
 
 #include <fcntl.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,8 +8,6 @@
 #include <cstdio>
 
 namespace taktwerk {
-
-int this_thread_id() noexcept { return static_cast<int>(::syscall(SYS_gettid)); }
 
 ThreadPageFaults::ThreadPageFaults(int thread_id) : file_(-1) {
     std::array<char, 64> path{};

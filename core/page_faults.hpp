@@ -14,9 +14,6 @@ struct PageFaults {
     friend bool operator==(const PageFaults&, const PageFaults&) = default;
 };
 
-/// The kernel's number of the calling thread. One system call.
-[[nodiscard]] int this_thread_id() noexcept;
-
 /// Of one thread of this process.
 class ThreadPageFaults {
 public:

@@ -24,15 +24,15 @@ constexpr auto foreign = std::to_array<long>({
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
     SYS_ptrace,
 #endif
-        SYS_process_vm_readv, SYS_process_vm_writev, SYS_kcmp, SYS_kexec_load,
+        SYS_process_vm_readv, SYS_process_vm_writev, SYS_process_madvise, SYS_pidfd_getfd, SYS_kcmp, SYS_kexec_load,
 #if defined(SYS_kexec_file_load)
         SYS_kexec_file_load,
 #endif
         SYS_init_module, SYS_finit_module, SYS_delete_module, SYS_mount, SYS_umount2, SYS_pivot_root, SYS_chroot, SYS_move_mount,
-        SYS_open_tree, SYS_fsopen, SYS_fsconfig, SYS_fsmount, SYS_fspick, SYS_swapon, SYS_swapoff, SYS_reboot, SYS_sethostname,
-        SYS_setdomainname, SYS_setns, SYS_unshare, SYS_add_key, SYS_request_key, SYS_keyctl, SYS_perf_event_open, SYS_userfaultfd, SYS_acct,
-        SYS_quotactl, SYS_syslog, SYS_vhangup, SYS_personality, SYS_open_by_handle_at, SYS_clock_settime, SYS_settimeofday,
-        SYS_io_uring_setup,
+        SYS_open_tree, SYS_fsopen, SYS_fsconfig, SYS_fsmount, SYS_fspick, SYS_mount_setattr, SYS_swapon, SYS_swapoff, SYS_reboot,
+        SYS_sethostname, SYS_setdomainname, SYS_setns, SYS_unshare, SYS_add_key, SYS_request_key, SYS_keyctl, SYS_perf_event_open,
+        SYS_userfaultfd, SYS_acct, SYS_quotactl, SYS_syslog, SYS_vhangup, SYS_personality, SYS_open_by_handle_at, SYS_clock_settime,
+        SYS_settimeofday, SYS_io_uring_setup,
 #if defined(__x86_64__)
         SYS_iopl, SYS_ioperm, SYS_modify_ldt,
 #endif

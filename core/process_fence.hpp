@@ -15,7 +15,7 @@ namespace taktwerk {
 [[nodiscard]] Result<void> keep_capabilities(std::span<const int> capabilities);
 
 /// Refused from now on with EPERM, for all threads and for good, also for whatever this process starts: looking into other processes, loading kernel
-/// modules and kernels, mounting, swapping, other namespaces, keys, profiling, ports of the hardware, setting clocks and host names, user faults; calls of
+/// modules and kernels, mounting, swapping, other namespaces, keys, profiling, io_uring, ports of the hardware, setting clocks and host names, user faults; calls of
 /// other architectures than this process'. What it costs: `./dev bench fence`. Under a sanitizer ptrace stays: its leak check needs it. Sets no_new_privs.
 /// Errors: fence.system_calls (a kernel without seccomp filters).
 [[nodiscard]] Result<void> refuse_foreign_system_calls();

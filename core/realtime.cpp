@@ -97,6 +97,8 @@ Result<void> set_fifo_priority(int priority) {
     return {};
 }
 
+bool has_fifo_priority() noexcept { return (::sched_getscheduler(0) & ~SCHED_RESET_ON_FORK) == SCHED_FIFO; }
+
 int this_thread_number() noexcept { return static_cast<int>(::gettid()); }
 
 Result<void> take_priority(int thread) {

@@ -75,6 +75,8 @@ private:
 [[nodiscard]] Result<void> set_fifo_priority(int priority);
 /// The kernel's number of the calling thread, for take_priority().
 [[nodiscard]] int this_thread_number() noexcept;
+/// Whether the calling thread has a SCHED_FIFO priority now. One system call.
+[[nodiscard]] bool has_fifo_priority() noexcept;
 /// Another thread of this process becomes an ordinary one. It can get its priority back by itself: set_fifo_priority(). Errors: realtime.priority.
 [[nodiscard]] Result<void> take_priority(int thread);
 /// Whole process, present and future pages; also stops malloc from giving memory back. Errors: realtime.lock_memory.

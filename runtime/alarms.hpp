@@ -231,7 +231,8 @@ inline constexpr std::array<AlarmInfo, 27> machine_alarms{{
      "page_faults",
      "The cycle had to wait for memory: {a} page faults in operation, {b} of them for a disk",
      "周期等待内存:运行中发生 {a} 次缺页,其中 {b} 次需要读磁盘",
-     "A program called fork(), the kernel moves or merges pages of the machine, or memory is not locked and was read from the disk again",
+     "A program called fork(), the kernel moves or merges pages of the machine, memory is not locked and was read from the disk again, or "
+     "scripts of the bus took memory between two cycles of a run that is recorded",
      "`taktwerk doctor` names what moves pages and takes it away; let programs start others with posix_spawn; lock memory "
      "(`realtime.lock_memory`)",
      ResetRule::self_clearing,

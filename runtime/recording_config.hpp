@@ -13,7 +13,7 @@ namespace taktwerk::runtime {
 struct RecordingConfig {
     Duration depth = std::chrono::seconds{20};   ///< of every signal, each cycle, in memory
     std::string directory;                       ///< of the recordings around alarms; empty: none is kept
-    std::uint16_t files = 20;                    ///< so many are kept, the newest; 0: all
+    std::uint16_t files = 20;                    ///< so many are kept, the newest; 0: none is made
     Duration before = std::chrono::seconds{10};  ///< what a recording shows before its alarm ...
     Duration after = std::chrono::seconds{2};    ///< ... and behind it
     bool replay = true;                          ///< the run up to there is kept as well, for `taktwerk replay`

@@ -54,12 +54,19 @@ void keep_newest(const std::string& folder, std::string_view machine, std::strin
                  const std::string& newest) {
     std::vector<std::string> names;
     std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-        if (auto name = entry.path().filename().string(); is_stamped(name, machine, ending)) names.push_back(std::move(name));
+    for (const auto& path : entries_of(folder))
+        if (auto name = path.filename().string(); is_stamped(name, machine, ending)) names.push_back(std::move(name));
     std::sort(names.begin(), names.end());
     const auto later = std::upper_bound(names.begin(), names.end(), std::filesystem::path(newest).filename().string());
     std::rotate(names.begin(), later, names.end());
     for (std::size_t i = 0; i + most < names.size(); ++i) std::filesystem::remove(std::filesystem::path(folder) / names[i], ignored);
+}
+
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> all;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) all.push_back(at->path());
+    return all;
 }
 
 }  // namespace taktwerk::runtime

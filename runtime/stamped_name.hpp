@@ -3,8 +3,10 @@
 // newest few are kept. Not real-time.
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/time.hpp"
 
@@ -20,5 +22,8 @@ namespace taktwerk::runtime {
 /// bears a later stamp was written while the clock went wrong, by it or before it was set, and counts as oldest of all. Nobody else's are touched;
 /// what cannot be deleted stays.
 void keep_newest(const std::string& folder, std::string_view machine, std::string_view ending, std::size_t most, const std::string& newest);
+
+/// What is in the folder, as far as its disk says: never an exception, which a loop over a directory_iterator throws when the disk goes away. Not real-time.
+[[nodiscard]] std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
 }  // namespace taktwerk::runtime

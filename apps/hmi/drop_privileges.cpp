@@ -13,8 +13,9 @@ namespace taktwerk::apps {
 Result<void> drop_privileges() {
     // root's own has to reach the machine's socket, the users and the audit, whose owner may be another, and a port below 1024. Nothing of the bus.
     constexpr std::array of_root{CAP_DAC_OVERRIDE, CAP_NET_BIND_SERVICE};
-    if (auto ok = keep_capabilities(std::span(of_root).first(::geteuid() == 0 ? of_root.size() : 0)); !ok) return ok;
-    return refuse_foreign_system_calls();
+    const auto rights = keep_capabilities(std::span(of_root).first(::geteuid() == 0 ? of_root.size() : 0));
+    const auto calls = refuse_foreign_system_calls();
+    return rights ? calls : rights;
 }
 
 }  // namespace taktwerk::apps

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -88,7 +89,7 @@ private:
 
 /// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
 int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFiles& files, const hmi::HmiConfig& hmi_config,
-               const RunOptions& options, Facts facts) {
+               const RunOptions& options, Facts facts, const std::function<void()>& ended_in_order) {
     SystemClock clock;
     const auto start = clock.now();
     LineWriter out{STDOUT_FILENO, [&options](std::uint64_t count) {
@@ -316,14 +317,16 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         return !time_up && !stop_requested();
     });
     runner.finish();
+    if (served) ended_in_order();  // whatever becomes of the files
     page.reset();
     const auto written = files_written();
     if (written == FileThread::End::hangs) {
         // Its thread hangs in the kernel and holds what it writes from: nothing of this process can be taken down any more.
         out.finish(last_lines_patience);
-        say_directly({"run.disk_hangs", "run",
-                      "the machine is down, but a disk does not take the rest of the trace, capture or alarm history",
-                      "Look at that disk; the file is not complete."});
+        say_directly(
+            {"run.disk_hangs", "run",
+             "the machine is down, but a disk does not take the rest of what it writes: trace, capture, recordings or alarm history",
+             "Look at that disk; the file is not complete."});
         std::_Exit(exit_bad_file);
     }
     files.say_frames(options.quiet || options.json, put);
@@ -346,7 +349,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
 }
 
-int run_here(LoadedFile loaded, const RunOptions& options, Facts facts) {
+int run_here(LoadedFile loaded, const RunOptions& options, Facts facts, const std::function<void()>& ended_in_order) {
     SystemClock clock;
     std::unique_ptr<World> world;
     std::unique_ptr<ecat::BusInterfaces> nic;
@@ -393,7 +396,7 @@ int run_here(LoadedFile loaded, const RunOptions& options, Facts facts) {
         print_error(ok.error());
         return exit_bad_file;
     }
-    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options, std::move(facts));
+    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options, std::move(facts), ended_in_order);
 }
 
 }  // namespace
@@ -401,7 +404,7 @@ int run_here(LoadedFile loaded, const RunOptions& options, Facts facts) {
 /// Who restarts a machine that crashed is no operator: it comes up without power, and nothing in it begins by itself.
 int run_real(LoadedFile loaded, RunOptions options, Facts facts) {
     const auto socket = loaded.hmi.socket.empty() ? hmi::make_socket_path(loaded.machine.name) : Result<std::string>{loaded.hmi.socket};
-    if (!socket) return run_here(std::move(loaded), options, std::move(facts));  // says why itself
+    if (!socket) return run_here(std::move(loaded), options, std::move(facts), [] {});  // says why itself
     auto mark = UnfinishedRun::begin(std::filesystem::path(*socket).replace_extension(".running"), boot_of_this_computer());
     if (mark.trouble()) print_error(*mark.trouble());
     if (mark.before()) {
@@ -412,7 +415,7 @@ int run_real(LoadedFile loaded, RunOptions options, Facts facts) {
             mark.before()->process != 0 ? fmt::format(" (process {})", mark.before()->process)
                                         : std::string(", as far as its mark can be read,"));
     }
-    const int code = run_here(std::move(loaded), options, std::move(facts));
+    const int code = run_here(std::move(loaded), options, std::move(facts), [&mark] { mark.ended(); });
     // Behind a crash a start that fails (the bus is not there yet) changes nothing: whoever tries again is no operator either.
     const bool ran = code == exit_ok || code == exit_alarm;
     if (ran || !mark.before()) mark.ended();

@@ -315,9 +315,9 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
       "Give the motion command again"},
      {"没有被中断的运动", "MC_GroupContinue 必须在 MC_GroupInterrupt 之后；轴组未被中断，或被中断的运动已被其他命令或停止结束", "重新发出运动命令"}},
     {ErrorId::not_at_interruption, "not_at_interruption",
-     {"The axes are not where the path was interrupted", "A member was moved since: its set position differs from the place of the interruption by more than its in-position window",
+     {"The axes are not where the path was interrupted", "A member was moved since: its set position is another than at the interruption",
       "Move the axes back to the place (MC_GroupReadPosition showed it at the end of the interruption), or give a new command"},
-     {"各轴不在路径中断的位置", "中断后某个成员被移动：其设定位置与中断位置之差超过到位窗口", "将各轴移回中断位置（中断结束时 MC_GroupReadPosition 显示的位置），或发出新命令"}},
+     {"各轴不在路径中断的位置", "中断后某个成员被移动：其设定位置与中断时不同", "将各轴移回中断位置（中断结束时 MC_GroupReadPosition 显示的位置），或发出新命令"}},
 }};
 // clang-format on
 

@@ -41,6 +41,7 @@ void AxisGroup::abort_all() noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);
+    if (interrupted_) run_.clear();  // nobody goes on with it
     interrupting_ = 0;
     interrupted_ = begun_ = false;
 }
@@ -59,6 +60,7 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
     queue_.finish_active(Outcome::error, static_cast<ErrorId>(error));
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::error, ErrorId::aborted_by_axis_error);
+    if (interrupted_) run_.clear();
     interrupting_ = lock_ = 0;
     interrupted_ = begun_ = false;
     run_.stop({}, Override{}, cycle_);
@@ -204,7 +206,7 @@ void AxisGroup::publish() noexcept {
     for (std::size_t i = 0; i < most_members; ++i) {
         if (!members_.has(i)) {
             view_.set_position[i] = view_.set_velocity[i] = view_.set_acceleration[i] = view_.actual_position[i] =
-                view_.actual_velocity[i] = 0;
+                view_.actual_velocity[i] = view_.commanded[i] = 0;
             continue;
         }
         const auto& axis = members_.axis(i).view();

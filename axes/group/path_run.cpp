@@ -11,8 +11,8 @@ namespace {
 
 double resolved(double wanted, double limit) noexcept { return wanted > 0 ? std::min(wanted, limit) : limit; }
 
-/// The last digits of a sum are no way.
-bool within(double end, double length) noexcept { return end <= length * (1 + 1e-12); }
+/// Whether it ends before the end, by more than the last digits of a sum. A stop that reaches the end is none: what runs ends there anyway, and exactly.
+bool within(double end, double length) noexcept { return end < length * (1 - 1e-12); }
 
 }  // namespace
 

@@ -100,8 +100,9 @@ struct MC_GroupPower {
     bool Status = false, Valid = false, Error = false;
     ErrorId ErrorID{};
 
-    EnableCore core{};         ///< not a pin
-    GroupRef powered_group{};  ///< not a pin: of the rising edge
+    EnableCore core{};                               ///< not a pin
+    GroupRef powered_group{};                        ///< not a pin: of the rising edge
+    std::array<AxisRef, axes::most_members> held{};  ///< not a pin: whom it keeps on; one that leaves the group meanwhile is let go
 
     static constexpr std::string_view summary = "Switches the power stages of all members on and off.";
     static consteval auto pins() {
@@ -115,6 +116,12 @@ struct MC_GroupPower {
         if (edge == EnableCore::Edge::rising) powered_group = AxesGroup;
         const bool ends = edge == EnableCore::Edge::falling;
         const axes::GroupView* view = view_of(ctx, Enable || ends ? powered_group : AxesGroup);
+        for (std::size_t i = 0; i < held.size(); ++i) {
+            const bool stays = Enable && view != nullptr && view->has(i) && view->members[i] == held[i];
+            if (!held[i].valid() || stays) continue;
+            (void)ctx.requests->power(held[i], false, false, false, ctx.owner);
+            held[i] = {};
+        }
         if (view == nullptr) {
             if (Enable) core.took(Reading::unless(ErrorId::invalid_group));
         } else if (Enable || ends) {
@@ -122,6 +129,7 @@ struct MC_GroupPower {
             for (std::size_t i = 0; i < axes::most_members; ++i) {
                 if (!view->has(i)) continue;
                 const auto refused = ctx.requests->power(view->members[i], Enable, Enable, Enable, ctx.owner);
+                if (Enable && refused == ErrorId::none) held[i] = view->members[i];
                 if (error == ErrorId::none) error = refused;
             }
             if (Enable) core.took(Reading::unless(error));

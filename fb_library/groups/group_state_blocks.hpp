@@ -131,7 +131,7 @@ struct MC_GroupReadCommandInfo : GroupReadBlock<MC_GroupReadCommandInfo> {
         const bool active = CommandID.id != 0 && view.active == CommandID.id;
         if (!active && !(waits && CommandID.id != 0)) return Reading::unless(ErrorId::unknown_command);
         if (!active) return Reading::valid();
-        CommandState = view.interrupted ? mcAccepted : mcActive;
+        CommandState = view.status(CommandID.id) == axes::CommandStatus::active ? mcActive : mcAccepted;
         ElapsedDuration = view.elapsed;
         RemainingDuration = view.remaining;
         RemainingDistance = view.remaining_distance;

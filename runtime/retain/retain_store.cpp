@@ -84,7 +84,9 @@ Result<void> RetainStore::write_next(Kept& kept) {
             "retain.not_readable", directory().string(),
             fmt::format("it could not be read again: more than {} values, blocks or parameters, or two of one name", most_kept_items),
             "nothing was changed: keep less"};
-    if (std::exchange(unread_[next_], false)) SlotFiles::set_aside(files_.place(next_));
+    // All of them at once: one that can be read again at the next start would win by its number over what has been written since.
+    for (unsigned s = 0; s < SlotFiles::count; ++s)
+        if (std::exchange(unread_[s], false)) SlotFiles::set_aside(files_.place(s));
     if (auto done = files_.write(next_, text); !done) return done;
     on_disk_[next_] = kept.axes;
     // Nobody but an older runtime reads its files from here on.

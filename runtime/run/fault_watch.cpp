@@ -16,9 +16,9 @@ void FaultWatch::look(Instant now) {
     if (!faults_) faults_.emplace(thread);
     if (!running_since_) running_since_ = now;
     const auto seen = faults_->read();
-    if (!seen) return;
-    if (now - *running_since_ < first_touches) before_ = *seen;
-    else machine_.tell_page_faults({seen->minor - before_.minor, seen->major - before_.major, locked_});
+    if (!seen) return faults_.reset();  // opened anew at the next look
+    if (!before_ || now - *running_since_ < first_touches) before_ = *seen;
+    else machine_.tell_page_faults({seen->minor - before_->minor, seen->major - before_->major, locked_});
 }
 
 }  // namespace taktwerk::runtime

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/page_faults.hpp"
+#include "core/realtime.hpp"
 #include "core/time.hpp"
 #include "runtime/machine/machine.hpp"
 
@@ -16,7 +17,7 @@ public:
     explicit FaultWatch(Machine& machine) : machine_(machine) {}
 
     /// The cycle's thread, before its first cycle: that is the one.
-    void this_is_it() noexcept { thread_.store(this_thread_id(), std::memory_order_release); }
+    void this_is_it() noexcept { thread_.store(this_thread_number(), std::memory_order_release); }
     /// Before look(): whether its memory was locked.
     void memory_is_locked(bool locked) noexcept { locked_ = locked; }
     /// The watch thread, often.
@@ -27,7 +28,7 @@ private:
     std::atomic<int> thread_{0};
     bool locked_ = false;
     std::optional<ThreadPageFaults> faults_;
-    PageFaults before_;  // operation
+    std::optional<PageFaults> before_;  // operation
     std::optional<Instant> running_since_;
     Instant next_{};
 };

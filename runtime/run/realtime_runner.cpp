@@ -35,6 +35,7 @@ RealtimeRunner::~RealtimeRunner() { finish(); }
 void RealtimeRunner::cycle_thread() {
     const CrashStack crash_stack;
     report_ = prepare_cycle_thread(request_);
+    cycle_priority_ = has_fifo_priority() ? request_.priority.value_or(0) : 0;
     math::set_stepping_thread_float_environment();
     fault_watch_.this_is_it();
     ready_.store(true, std::memory_order_release);
@@ -70,9 +71,9 @@ void RealtimeRunner::modbus_thread(std::size_t device) {
     while (clock_.now() < until && machine_.end_modbus(device, clock_.now())) {}
 }
 
-// Above the tasks: it has to get a processor while one of them computes without an end. Refused: so were theirs.
+// Above the tasks: it has to get a processor while one of them computes without an end. Where the cycle has no priority, tasks have none either.
 void RealtimeRunner::guard_thread() {
-    if (request_.priority && *request_.priority > 1) (void)set_fifo_priority(*request_.priority - 1);
+    if (cycle_priority_ > 1) (void)set_fifo_priority(cycle_priority_ - 1);
     while (!all_home_.load(std::memory_order_acquire)) {
         tasks_.look(clock_.now());
         clock_.sleep_until(clock_.now() + watch_period);
@@ -103,7 +104,7 @@ Result<RealtimeReport> RealtimeRunner::start() {
     cycle_ = std::thread{[this] { cycle_thread(); }};
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
     whole.items.insert(whole.items.end(), report_.items.begin(), report_.items.end());
-    const auto tasks = tasks_.start(stop_);
+    const auto tasks = tasks_.start(stop_, cycle_priority_);
     whole.items.insert(whole.items.end(), tasks.items.begin(), tasks.items.end());
     if (machine_.config().realtime.required && !whole.all_granted()) {
         finish();

@@ -80,6 +80,7 @@ private:
     CpuLatencyHold latency_;
     RealtimeRequest request_;
     RealtimeReport report_;
+    int cycle_priority_ = 0;  // that it has; 0: none. Written before ready_
     CycleCounters counters_;
     EndWatch end_watch_;
     FaultWatch fault_watch_;

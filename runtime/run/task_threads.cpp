@@ -19,10 +19,10 @@ constexpr std::size_t touched_stack = std::size_t{128} << 10;
 
 }  // namespace
 
-RealtimeReport TaskThreads::start(const std::atomic<bool>& stop) {
+RealtimeReport TaskThreads::start(const std::atomic<bool>& stop, int cycle_priority) {
     std::vector<TaskConfig> tasks;
     for (std::size_t i = 0; i < machine_.slow_task_count(); ++i) tasks.push_back(machine_.slow_task(i));
-    const auto priorities = task_priorities(tasks, machine_.config().realtime.priority);
+    const auto priorities = task_priorities(tasks, cycle_priority);
     for (std::size_t i = 0; i < tasks.size(); ++i) {
         auto& place = places_.emplace_back();
         place.task = i;
@@ -38,8 +38,8 @@ RealtimeReport TaskThreads::start(const std::atomic<bool>& stop) {
     for (std::size_t i = 0; i < tasks.size(); ++i) {
         const auto& place = places_[i];
         while (!place.ready.load(std::memory_order_acquire)) std::this_thread::yield();
-        if (place.priority == 0) continue;
-        names += fmt::format("{}{}.{} {}", names.empty() ? "" : ", ", tasks[i].program, tasks[i].name, place.priority);
+        if (priorities[i] == 0) continue;
+        names += fmt::format("{}{}.{} {}", names.empty() ? "" : ", ", tasks[i].program, tasks[i].name, priorities[i]);
         if (!place.granted) granted = place.granted;
     }
     if (!names.empty())
@@ -88,7 +88,6 @@ void TaskThreads::look(Instant now) {
         // In this order: a run that ends in between finds the flag behind its next look, and takes its priority back.
         if (!take_priority(place.number.load(std::memory_order_relaxed))) continue;
         place.taken.store(true, std::memory_order_release);
-        taken_.fetch_add(1, std::memory_order_relaxed);
     }
 }
 

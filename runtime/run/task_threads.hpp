@@ -22,12 +22,11 @@ public:
     /// Both outlive the threads.
     TaskThreads(Machine& machine, Clock& clock) : machine_(machine), clock_(clock) {}
 
-    /// One item for all of them; none where nothing was asked for. They end when `stop` is set.
-    [[nodiscard]] RealtimeReport start(const std::atomic<bool>& stop);
+    /// One item for all of them, with what was asked for and whether it was granted; none where nothing was. `cycle_priority`: that the cycle has; 0: none,
+    /// and then they have none either. They end when `stop` is set.
+    [[nodiscard]] RealtimeReport start(const std::atomic<bool>& stop, int cycle_priority);
     /// Often, from another thread: who has computed too long becomes an ordinary thread until that run has ended.
     void look(Instant now);
-    /// How many have lost their priority for this reason so far. Any thread.
-    [[nodiscard]] std::uint64_t taken() const noexcept { return taken_.load(std::memory_order_relaxed); }
     /// Waits for those whose task comes back; for ever for one that does not.
     void join();
 
@@ -49,7 +48,6 @@ private:
     Machine& machine_;
     Clock& clock_;
     std::deque<Place> places_;
-    std::atomic<std::uint64_t> taken_{0};
 };
 
 }  // namespace taktwerk::runtime

@@ -30,16 +30,16 @@ Result<std::unique_ptr<RunMemory>> RunMemory::open(RecordingInfo info, Place pla
                      "choose another one: `recording: {directory: ...}`, or --recordings"};
     std::unique_ptr<RunMemory> memory{new RunMemory{std::move(info), std::move(place), room}};
     memory->clean();
-    for (const auto& entry : fs::directory_iterator(memory->place_.folder, failed))
-        if (entry.path().extension() == replay_ending) memory->there_.insert(entry.path().string());
+    for (const auto& path : entries_of(memory->place_.folder))
+        if (path.extension() == replay_ending) memory->there_.insert(path.string());
     return memory;
 }
 
 void RunMemory::clean() const {
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(place_.folder, ignored))
-        if (is_stamped(entry.path().filename().string(), place_.machine, std::string{replay_ending} + std::string{unfinished}))
-            fs::remove(entry.path(), ignored);
+    for (const auto& path : entries_of(place_.folder))
+        if (is_stamped(path.filename().string(), place_.machine, std::string{replay_ending} + std::string{unfinished}))
+            fs::remove(path, ignored);
 }
 
 std::string RunMemory::path_for(std::string_view why, Instant at) const {
@@ -86,7 +86,8 @@ Result<std::string> RunMemory::keep(Instant now) {
 
 RunMemory::State RunMemory::state() const {
     const std::scoped_lock lock{mutex_};
-    return {std::max(until_, place_.start) - place_.start, in_memory_, on_disk_, path_, !wishes_.empty(), ended_};
+    const bool waits = !wishes_.empty() || writing_;
+    return {std::max(until_, place_.start) - place_.start, in_memory_, on_disk_, kept_ || waits ? path_ : "", waits, ended_};
 }
 
 // --- a thread that may wait ------------------------------------------------------------------------------------------------------------
@@ -115,7 +116,7 @@ Error RunMemory::end(Error why) {
     return why;
 }
 
-Result<void> RunMemory::write_blocks(const std::string& path) {
+Result<void> RunMemory::write_blocks(const std::string& path, bool wished) {
     if (!file_) {
         auto created = RecordingWriter::create(path + std::string{unfinished}, info_, {0, room_.disk});
         if (!created) return std::move(created).error();
@@ -140,7 +141,8 @@ Result<void> RunMemory::write_blocks(const std::string& path) {
         if (error.code == "recording.limit") {
             error = {"recording.limit", place_.machine,
                      fmt::format("the run is longer than the {} bytes that its replay may have on the disk", room_.disk),
-                     "What came before can be replayed. For longer runs: `recording: {replay_disk: ...}`; each start begins anew"};
+                     std::string(wished ? "What came before can be replayed. " : "Nothing of this run is kept. ") +
+                         "For longer runs: `recording: {replay_disk: ...}`; each start begins anew"};
             (void)file_->finish(RecordingEnd::limit, lost_).ok();
         }
         return error;
@@ -153,11 +155,12 @@ void RunMemory::keep_bounds() const {
     std::vector<std::pair<std::string, std::uint64_t>> files;
     std::error_code ignored;
     std::uint64_t all = file_ ? file_->bytes() : 0;
-    for (const auto& entry : fs::directory_iterator(place_.folder, ignored)) {
-        const auto path = entry.path().string();
-        if (!is_stamped(entry.path().filename().string(), place_.machine, replay_ending) || path == newest) continue;
-        files.emplace_back(path, fs::file_size(entry.path(), ignored));
-        all += files.back().second;
+    for (const auto& path : entries_of(place_.folder)) {
+        if (!is_stamped(path.filename().string(), place_.machine, replay_ending) || path == newest) continue;
+        const auto bytes = fs::file_size(path, ignored);
+        if (ignored) continue;
+        files.emplace_back(path.string(), bytes);
+        all += bytes;
     }
     std::ranges::sort(files);
     for (const auto& [path, bytes] : files) {
@@ -166,21 +169,30 @@ void RunMemory::keep_bounds() const {
     }
 }
 
+Result<void> RunMemory::give_name(const std::string& path) {
+    if (kept_) return {};
+    std::error_code failed;
+    fs::rename(path + std::string{unfinished}, path, failed);
+    if (failed)
+        return Error{"recording.write", path, fmt::format("the recording cannot get its name: {}", failed.message()),
+                     "look into that folder"};
+    const std::scoped_lock lock{mutex_};
+    kept_ = true;
+    return {};
+}
+
 Result<RunMemory::Kept> RunMemory::write(const Wish& wish) {
     const auto path = [&] {
         const std::scoped_lock lock{mutex_};
         return path_;
     }();
-    if (auto done = write_blocks(path); !done) return end(done.error());
-    if (auto done = file_->finish(RecordingEnd::kept, lost_); !done) return end(done.error());
-    if (!kept_) {
-        std::error_code failed;
-        fs::rename(path + std::string{unfinished}, path, failed);
-        if (failed)
-            return end(
-                {"recording.write", path, fmt::format("the recording cannot get its name: {}", failed.message()), "look into that folder"});
-        kept_ = true;
+    if (auto done = write_blocks(path, true); !done) {
+        // What the room had space for is whole and can be replayed.
+        if (done.error().code == "recording.limit") (void)give_name(path).ok();
+        return end(done.error());
     }
+    if (auto done = file_->finish(RecordingEnd::kept, lost_); !done) return end(done.error());
+    if (auto done = give_name(path); !done) return end(done.error());
     keep_bounds();
     return Kept{path, wish.why, std::max(until_, place_.start) - place_.start, file_->bytes()};
 }
@@ -204,6 +216,7 @@ Result<RunMemory::Kept> RunMemory::work() {
         if (due && ended_)
             return Error{"recording.ended", due->why.empty() ? place_.machine : due->why,
                          fmt::format("what led to it cannot be replayed: {}", ended_->what), ended_->remedy};
+        writing_ = due.has_value();
         full = in_memory_ > room_.memory;
         if (full && path_.empty()) path_ = path_for("run", place_.start);
         path = path_;
@@ -211,17 +224,26 @@ Result<RunMemory::Kept> RunMemory::work() {
     if (due) {
         auto kept = write(*due);
         said_ = said_ || !kept;
+        const std::scoped_lock lock{mutex_};
+        writing_ = false;
         return kept;
     }
     if (!full) return Kept{};
-    auto done = write_blocks(path);
+    auto done = write_blocks(path, kept_);
     if (done && kept_) done = file_->finish(RecordingEnd::kept, lost_);
     if (!done) {
         said_ = true;
+        if (!kept_) discard();
         return end(done.error());
     }
-    keep_bounds();
+    if (kept_) keep_bounds();  // what nobody asked for takes no room of what somebody did
     return Kept{};
+}
+
+void RunMemory::discard() {
+    if (!file_) return;
+    file_.reset();
+    clean();
 }
 
 Result<RunMemory::Kept> RunMemory::finish() {
@@ -231,11 +253,12 @@ Result<RunMemory::Kept> RunMemory::finish() {
         if (!wishes_.empty() && !ended_) last = wishes_.back();
         wishes_.clear();
     }
-    if (last) return write(*last);
-    if (file_ && !kept_) {
-        file_.reset();
-        clean();
+    if (last) {
+        auto kept = write(*last);
+        if (!kept_) discard();
+        return kept;
     }
+    if (!kept_) discard();
     return Kept{};
 }
 

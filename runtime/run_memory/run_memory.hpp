@@ -52,7 +52,7 @@ public:
     struct State {
         Duration covered{};  ///< from the run's start
         std::uint64_t memory = 0, disk = 0;
-        std::string file;            ///< where the run is kept; empty: nowhere yet
+        std::string file;            ///< where the run is kept, or will be once `waits` is over; empty: nowhere
         bool waits = false;          ///< its last seconds are still to come
         std::optional<Error> ended;  ///< nothing more is taken, and why
     };
@@ -70,7 +70,7 @@ public:
     /// What is due. Errors: recording.write, recording.limit, recording.lost: the run is taken no further, and this is said once; recording.ended: what
     /// was asked for cannot be kept any more.
     [[nodiscard]] Result<Kept> work();
-    /// After the last block: what is still wished, and what nobody wished goes. Again until nothing comes.
+    /// After the last block, once: what is still wished, and what nobody wished goes.
     [[nodiscard]] Result<Kept> finish();
 
 private:
@@ -81,7 +81,9 @@ private:
     RunMemory(RecordingInfo info, Place place, Room room) : info_(std::move(info)), place_(std::move(place)), room_(room) {}
     [[nodiscard]] std::string path_for(std::string_view why, Instant at) const;
     /// Its file is begun where there is none, and has all blocks.
-    [[nodiscard]] Result<void> write_blocks(const std::string& path);
+    [[nodiscard]] Result<void> write_blocks(const std::string& path, bool wished);
+    [[nodiscard]] Result<void> give_name(const std::string& path);
+    void discard();
     [[nodiscard]] Result<Kept> write(const Wish& wish);
     [[nodiscard]] Error end(Error why);
     void clean() const;
@@ -100,11 +102,14 @@ private:
     std::deque<Wish> wishes_;
     std::optional<Error> ended_;
     std::string path_;  // of the file, once the run has its name
+    std::uint64_t on_disk_ = 0;
+    bool kept_ = false;     // its file has its name; the other thread reads it as well
+    bool writing_ = false;  // a wish is being written
 
     // The thread that may wait.
     std::optional<RecordingWriter> file_;
-    bool kept_ = false, said_ = false;
-    std::uint64_t lost_ = 0, on_disk_ = 0;
+    bool said_ = false;
+    std::uint64_t lost_ = 0;
 };
 
 }  // namespace taktwerk::runtime

@@ -205,6 +205,6 @@ export const axis_errors: Readonly<Record<string, string>> = {
     'MC_GroupContinue follows MC_GroupInterrupt; the group was not interrupted, or another command or a stop has ended what was': 'MC_GroupContinue 必须在 MC_GroupInterrupt 之后；轴组未被中断，或被中断的运动已被其他命令或停止结束',
     'Give the motion command again': '重新发出运动命令',
     'The axes are not where the path was interrupted': '各轴不在路径中断的位置',
-    'A member was moved since: its set position differs from the place of the interruption by more than its in-position window': '中断后某个成员被移动：其设定位置与中断位置之差超过到位窗口',
+    'A member was moved since: its set position is another than at the interruption': '中断后某个成员被移动：其设定位置与中断时不同',
     'Move the axes back to the place (MC_GroupReadPosition showed it at the end of the interruption), or give a new command': '将各轴移回中断位置（中断结束时 MC_GroupReadPosition 显示的位置），或发出新命令',
 };

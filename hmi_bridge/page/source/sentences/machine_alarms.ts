@@ -45,7 +45,7 @@ export const machine_alarms: Readonly<Record<string, string>> = {
     'Mend the program; it can ask ctx.good(input) before it computes': '修正程序；计算之前可用 ctx.good(input) 询问',
     'Its coupling opened or its cable was pulled before MC_Power was taken away, or the group lost its supply': '在撤销 MC_Power 之前联接被断开或电缆被拔出，或该组失去电源',
     'Make sure that nothing has fallen; connect the group again or lay it down, then reset. A program takes Enable away and waits for Status before it uncouples': '确认没有物体坠落；重新连接该组或将其放好，然后复位。程序应先撤销 Enable 并等待 Status 再脱开',
-    'A program called fork(), the kernel moves or merges pages of the machine, or memory is not locked and was read from the disk again': '程序调用了 fork()，内核移动或合并了机器的内存页，或内存未锁定而需再次从磁盘读取',
+    'A program called fork(), the kernel moves or merges pages of the machine, memory is not locked and was read from the disk again, or scripts of the bus took memory between two cycles of a run that is recorded': '程序调用了 fork()，内核移动或合并了机器的内存页，或内存未锁定而需再次从磁盘读取，或在记录运行时总线脚本在两个周期之间申请了内存',
     '`taktwerk doctor` names what moves pages and takes it away; let programs start others with posix_spawn; lock memory (`realtime.lock_memory`)': '`taktwerk doctor` 指出是什么移动了内存页并可消除；让程序用 posix_spawn 启动其他进程；锁定内存（`realtime.lock_memory`）',
     'Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)': '有人用自己的值代替了实际值（例如在输入输出页面）',
     'An endless loop, a wait or a long computation in this task, or other work kept it from the processor': '该任务中有死循环、等待或长时间计算，或被其他工作占用了处理器',
