@@ -11,31 +11,52 @@ namespace {
 constexpr std::size_t longest_line =
     2000;  // std::regex goes as deep as a line is long; what is longer is masked whole where it holds such a word
 
-/// The key, what stands between, the value: quoted, or up to what ends one in a flow or a line.
+const std::string secret_key =
+    R"re(((?:(?:[A-Za-z0-9][A-Za-z0-9_-]*)?(?:password|passwd|passphrase|secret|token|credential|private[_-]?key|api[_-]?key)|)re"
+    R"re((?:[A-Za-z0-9]+[_-])*(?:psk|community))s?(?:[_-]?(?:hash|text|value|access|key|\d+))*))re";
+
+/// The key, what stands between, the value: quoted (also inside a quoted text) where it ends as a value does, else all that follows.
 const std::regex& secret() {
-    static const std::regex pattern(
-        R"re((^|[^A-Za-z0-9])((?:[A-Za-z0-9]+[_-])*(?:password|passwd|passphrase|secret|token|psk|credentials?|private[_-]?key|api[_-]?key|community)(?:[_-](?:hash|text|value))?)("?\s*[:=]\s*|\s+(?=[^\s:=,}\]#])))re"
-        R"re(("(?:[^"\\]|\\.)*"|'[^']*'|[^\s,}\]#][^\s,}\]]*))re",
-        std::regex::icase | std::regex::optimize);
+    static const std::regex pattern("(^|[^A-Za-z0-9])" + secret_key +
+                                        R"re((\\?["']?\s*[:=]\s*|\s+(?=[^\s:=,}\]#])))re"
+                                        R"re((\\".*?\\"|(?:"(?:[^"\\]|\\.)*"|'(?:[^']|'')*')(?=\s*(?:[,}\]]|$|\s#|\s--))|\S.*))re",
+                                    std::regex::icase | std::regex::optimize);
     return pattern;
 }
+/// Up to the last @ before a blank or a quotation mark: a password may have one itself.
 const std::regex& user_in_address() {
-    static const std::regex pattern(R"re(([a-z][a-z0-9+.-]*://[^\s/:@"']*:)([^\s/@"']+)(@))re", std::regex::icase | std::regex::optimize);
+    static const std::regex pattern(R"re(([a-z][a-z0-9+.-]*://[^\s/:@"']*:)([^\s"']+)(@))re", std::regex::icase | std::regex::optimize);
     return pattern;
 }
-const std::regex& block_begins() {
-    static const std::regex pattern(
-        R"re(^(\s*)(?:-\s+)?"?([A-Za-z0-9_-]*(?:password|passwd|passphrase|secret|token|psk|private[_-]?key|api[_-]?key))"?\s*:\s*[|>][+-]?\d*\s*$)re",
-        std::regex::icase | std::regex::optimize);
+/// A secret key at the beginning of a line: what is deeper than it belongs to its value.
+const std::regex& key_of_line() {
+    static const std::regex pattern(R"re(^(\s*(?:-\s+)*)["']?)re" + secret_key + R"re(["']?\s*:(?:\s+(\S.*))?\s*$)re",
+                                    std::regex::icase | std::regex::optimize);
+    return pattern;
+}
+/// The lines of a text follow; what stands behind it is a comment.
+const std::regex& block_mark() {
+    static const std::regex pattern(R"re([|>][+-]?\d*[+-]?\s*(?:#.*)?)re");
     return pattern;
 }
 
 std::size_t indent_of(std::string_view line) { return std::min(line.find_first_not_of(' '), line.size()); }
 
-/// `password` followed by a word is a secret on a command line (`--password x`) and no secret in a sentence.
-bool counts(const std::string& key_and_between, const std::string& line, std::size_t at) {
-    if (key_and_between.find_first_of(":=") != std::string::npos) return true;
-    return at >= 2 && line.compare(at - 2, 2, "--") == 0;
+/// In `{...}` or `[...]` of the same line, up to `at`.
+bool in_flow(const std::string& line, std::size_t at) {
+    const auto before = std::string_view(line).substr(0, at);
+    const auto count = [&](char c) { return std::count(before.begin(), before.end(), c); };
+    return count('{') > count('}') || count('[') > count(']');
+}
+
+/// How long the value is that begins at `at`; `quoted`: it ends by itself.
+std::size_t value_length(const std::string& line, std::size_t at, std::size_t found, bool on_command_line) {
+    const auto value = std::string_view(line).substr(at, found);
+    const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'') && value.back() == value.front();
+    const bool inside_a_text = value.starts_with("\\\"") && value.ends_with("\\\"");
+    if (quoted || inside_a_text) return found;
+    const auto ends = on_command_line ? value.find_first_of(" \t\r") : in_flow(line, at) ? value.find_first_of(",}]\r") : value.find('\r');
+    return std::min(ends, found);
 }
 
 std::string mask_line(const std::string& line, std::size_t number, std::vector<std::string>& where) {
@@ -44,15 +65,29 @@ std::string mask_line(const std::string& line, std::size_t number, std::vector<s
     std::smatch found;
     while (std::regex_search(from, line.cend(), found, secret())) {
         const auto begin = static_cast<std::size_t>(found[2].first - line.cbegin());
-        out.append(from, found[4].first);
-        if (counts(found[3].str(), line, begin) && found[4].str() != mask) {
-            const char quote = *found[4].first;
-            out += quote == '"' || quote == '\'' ? quote + std::string(mask) + quote : std::string(mask);
-            where.push_back(fmt::format("line {}: {}", number, found[2].str()));
-        } else {
-            out.append(found[4].first, found[4].second);
+        const bool assigned = found[3].str().find_first_of(":=") != std::string::npos;
+        // `password` followed by a word is a secret on a command line (`--password x`) and no secret in a sentence.
+        const bool on_command_line = begin >= 2 && line.compare(begin - 2, 2, "--") == 0;
+        if (!assigned && !on_command_line) {
+            out.append(from, found[2].second);
+            from = found[2].second;
+            continue;
         }
-        from = found[4].second;
+        const auto at = static_cast<std::size_t>(found[4].first - line.cbegin());
+        const auto length = value_length(line, at, static_cast<std::size_t>(found[4].length()), on_command_line);
+        out.append(from, found[4].first);
+        const auto value = line.substr(at, length);
+        if (value.empty() || value == mask) {
+            out += value;
+        } else {
+            const char quote = value.front();
+            const bool kept = (quote == '"' || quote == '\'') && value.size() > 1 && value.back() == quote;
+            out += value.starts_with("\\\"") && value.ends_with("\\\"") ? "\\\"" + std::string(mask) + "\\\""
+                   : kept                                               ? quote + std::string(mask) + quote
+                                                                        : std::string(mask);
+            where.push_back(fmt::format("line {}: {}", number, found[2].str()));
+        }
+        from = line.cbegin() + static_cast<std::ptrdiff_t>(at + length);
     }
     out.append(from, line.cend());
     std::string done;
@@ -72,7 +107,8 @@ std::string mask_line(const std::string& line, std::size_t number, std::vector<s
 Masked masked(std::string_view text) {
     Masked result;
     constexpr auto none = std::string::npos;
-    std::size_t block = none;  // indent of the key whose lines follow
+    std::size_t block = none;  // column of the key whose lines follow
+    bool list = false;         // and it has no value yet: a list may begin in that column
     std::size_t number = 0;
     for (std::size_t at = 0; at < text.size();) {
         const auto end = std::min(text.find('\n', at), text.size());
@@ -80,10 +116,12 @@ Masked masked(std::string_view text) {
         ++number;
         const bool blank = line.find_first_not_of(" \r") == std::string::npos;
         std::smatch begins;
-        if (block != none && !blank && indent_of(line) > block) {
-            result.text += std::string(indent_of(line), ' ') + std::string(mask);
+        const auto indent = indent_of(line);
+        if (block != none && !blank && (indent > block || (list && indent == block && line[indent] == '-'))) {
+            result.text += std::string(indent, ' ') + std::string(mask);
         } else if (line.size() > longest_line) {
-            static const std::regex any("password|passwd|passphrase|secret|token|psk|private.?key|api.?key|://[^/]*@", std::regex::icase);
+            static const std::regex any("password|passwd|passphrase|secret|token|credential|psk|community|private.?key|api.?key|://[^/]*@",
+                                        std::regex::icase);
             std::string start = line;
             bool holds = false;  // in pieces that overlap by more than the longest word
             for (std::size_t i = 0; i < line.size() && !holds; i += 1700) holds = std::regex_search(line.substr(i, 2000), any);
@@ -92,8 +130,13 @@ Masked masked(std::string_view text) {
                 result.where.push_back(fmt::format("line {}: the whole line, which is longer than {} characters", number, longest_line));
         } else {
             if (!blank) block = none;
-            if (std::regex_match(line, begins, block_begins())) {
+            const bool named = std::regex_match(line, begins, key_of_line());
+            if (named) {
                 block = static_cast<std::size_t>(begins[1].length());
+                list = !begins[3].matched;
+            }
+            const auto value = named ? begins[3].str() : std::string();
+            if (named && (value.empty() || std::regex_match(value, block_mark()))) {
                 result.where.push_back(fmt::format("line {}: {}", number, begins[2].str()));
                 result.text += line;
             } else {

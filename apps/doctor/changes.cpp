@@ -213,10 +213,19 @@ Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<HostChange>&
         if (auto changed = put(change, change.value); !changed) outcome.error = changed.error();
         else if (const auto after = now(change); after != change.value)
             outcome.error = Error{"doctor.not_taken", named(change),
-                                  fmt::format("was written and says {} all the same", after.value_or("nothing")), ""};
-        if (outcome.error) {
-            if (auto written = record(all); !written) return written.error();  // as it was before: nothing to take back
-        } else all = std::move(next);
+                                  fmt::format("{} was written, and it says {}", change.value, after.value_or("nothing")),
+                                  "the driver has values of its own; `--revert` puts back what was there"};
+        const auto after = now(change);
+        if (outcome.error && after == before) {
+            if (auto written = record(all); !written) return written.error();  // nothing to take back
+        } else {
+            if (outcome.error && after) {  // what is there now is ours, whatever was asked for
+                const auto ours = std::find_if(next.begin(), next.end(), [&](const auto& each) { return same_place(each.change, change); });
+                ours->change.value = *after;
+                if (auto written = record(next); !written) return written.error();
+            }
+            all = std::move(next);
+        }
         done.push_back(std::move(outcome));
     }
     return done;

@@ -8,6 +8,7 @@
 
 #include "apps/doctor/changes.hpp"
 #include "apps/doctor/examine.hpp"
+#include "apps/machine/running_machine.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -51,6 +52,12 @@ int change(const DoctorOptions& options, const Examination& seen, EthernetPorts&
                      "sudo taktwerk doctor ...; without --apply it only looks, and shows the commands"});
         return exit_refused;
     }
+    if (const auto machine = options.interface.empty() ? std::nullopt : machine_on(options.interface, {})) {
+        print_error({"doctor.machine_runs", options.interface,
+                     fmt::format("{} runs on it, and some of these settings take its link away for seconds", machine->name),
+                     "end that run first (taktwerk shutdown)"});
+        return exit_refused;
+    }
     Changes changes{"/", ports};
     if (options.revert) {
         const auto done = changes.revert();
@@ -89,7 +96,10 @@ int run_doctor(const DoctorOptions& options) {
         return exit_usage;
     }
     if (options.apply) {
-        if (const int code = change(options, seen, ports); code != exit_ok) return code;
+        // root has every right: what is to be had is for those that a machine runs as.
+        auto of_others = wanted;
+        of_others.of_others = true;
+        if (const int code = change(options, examine("/", ports, of_others, options.interface), ports); code != exit_ok) return code;
         seen = examine("/", ports, wanted, options.interface);
     }
     if (!options.no_measuring) {

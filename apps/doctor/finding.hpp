@@ -46,6 +46,7 @@ struct Wanted {
     Duration cycle = std::chrono::milliseconds{1};
     Duration computing = std::chrono::microseconds{100};  ///< of a cycle
     int cpu = -1;                                         ///< of the cycle's thread; -1: any
+    bool of_others = false;  ///< the rights of this process, which are root's, say nothing of who runs the machine
 };
 
 /// By the share of the cycle that it costs.

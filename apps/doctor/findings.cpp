@@ -81,12 +81,13 @@ void rights(Findings& out, const HostFacts& facts, const Wanted& wanted) {
     const std::string remedy =
         "run it as the service taktwerk@MACHINE (docs/service.md), or for people of the group taktwerk, from their next login on:\n"
         "printf '@taktwerk - rtprio 95\\n@taktwerk - memlock unlimited\\n' > /etc/security/limits.d/60-taktwerk.conf";
-    if (r.may_schedule || r.realtime_priority.value_or(0) >= 80) out.push_back(good("rights.priority", "real-time priority is granted"));
+    if (!wanted.of_others && (r.may_schedule || r.realtime_priority.value_or(0) >= 80))
+        out.push_back(good("rights.priority", "real-time priority is granted"));
     else
         out.push_back(dear(wanted, "rights.priority", 5000,
                            fmt::format("no real-time priority for this user (rtprio {:.0f})", r.realtime_priority.value_or(0)),
                            "any other program on this computer delays cycles by ms", "sched(7)", remedy, changes));
-    if (r.may_lock || std::isinf(r.locked_bytes.value_or(0))) {
+    if (!wanted.of_others && (r.may_lock || std::isinf(r.locked_bytes.value_or(0)))) {
         out.push_back(good("rights.memory",
                            facts.memory.swap_kb > 0 ? "memory may be locked: swap does not touch the machine" : "memory may be locked"));
     } else {
@@ -109,7 +110,7 @@ void sleep_states(Findings& out, const HostFacts& facts, const Wanted& wanted) {
             good("cpu.sleep", deepest == nullptr ? "the kernel knows no sleep states" : "no sleep state that takes long to leave"));
         return;
     }
-    if (facts.rights.may_hold_latency) {
+    if (facts.rights.may_hold_latency && !wanted.of_others) {
         out.push_back(good("cpu.sleep", fmt::format("deepest sleep state {} ({:.0f} us): a running machine keeps the CPUs out of it",
                                                     deepest->name, deepest->exit_us)));
         return;

@@ -17,10 +17,11 @@ Finding of(Severity severity, std::string code, std::string found, std::string c
     return {std::move(code), severity, 0, std::move(found), std::move(costs), "", std::move(remedy)};
 }
 
-/// ethtool's words for a udev rule, so that the settings are there again when the interface comes.
+/// ethtool's words for a udev rule, so that the settings are there again when the interface comes. KERNEL, and the event of a renaming (`move`), since
+/// NAME is given by a later rule (udev(7)).
 HostChange kept(const std::string& interface, const std::string& what, const std::string& words) {
     return {HostChange::Kind::file, fmt::format("/etc/udev/rules.d/60-taktwerk-{}-{}.rules", interface, what),
-            fmt::format("ACTION==\"add|move\", SUBSYSTEM==\"net\", NAME==\"{0}\", RUN+=\"/usr/sbin/ethtool {1}\"\n", interface, words)};
+            fmt::format("ACTION==\"add|move\", SUBSYSTEM==\"net\", KERNEL==\"{0}\", RUN+=\"/usr/sbin/ethtool {1}\"\n", interface, words)};
 }
 
 void link(std::vector<Finding>& out, const PortFacts& p) {

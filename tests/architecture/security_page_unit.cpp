@@ -47,7 +47,7 @@ TEST(SecurityPage, EveryTestThatItNamesIsThere) {
     EXPECT_FALSE(there.contains("SecurityPage.NobodyHasThis")) << "what it looks into knows no such test";
 }
 
-TEST(SecurityPage, EveryFuzzTargetStandsInItOnce) {
+TEST(SecurityPage, EveryFuzzTargetStandsInIt) {
     const auto page = text_of(root / "docs/security.md");
     std::size_t targets = 0;
     for (const auto& entry : fs::directory_iterator(root / "tests/fuzz")) {

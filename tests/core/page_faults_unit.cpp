@@ -1,4 +1,5 @@
 #include "core/page_faults.hpp"
+#include "core/realtime.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -32,7 +33,7 @@ TEST(PageFaults, CountsThoseOfThisThread) {
     auto* memory = static_cast<volatile char*>(::mmap(nullptr, pages * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
     ASSERT_NE(memory, MAP_FAILED);
     ::madvise(const_cast<char*>(memory), pages * page, MADV_NOHUGEPAGE);
-    const ThreadPageFaults mine{this_thread_id()};
+    const ThreadPageFaults mine{this_thread_number()};
     (void)mine.read();  // its own first way
     const auto before = mine.read();
     for (std::size_t i = 0; i < pages; ++i) memory[i * page] = 1;

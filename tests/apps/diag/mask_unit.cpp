@@ -23,6 +23,47 @@ TEST(Mask, ValuesOfSecretKeysAreGoneInEachWayToWriteThem) {
     }
 }
 
+// Values as people choose them, and keys as other programs write them.
+TEST(Mask, ValuesWithBlanksCommasAndSignsAreGoneToTheirEnd) {
+    for (const auto* text : {"password: correct horse hunter2",
+                             "password: ab,hunter2",
+                             "password: [a, hunter2]",
+                             "password: !!str hunter2",
+                             "password: &p hunter2",
+                             "'password': 'hunter2'",
+                             "password: 'it''s hunter2'",
+                             "password: ,hunter2",
+                             "password: }hunter2",
+                             "{password: 'a b hunter2', port: 1}",
+                             R"(log: "{\"password\":\"hunter2\"}")",
+                             "url: mqtt://plc:hun/hunter2@b",
+                             "url: mqtt://plc:p@hunter2@b",
+                             "password:\n  hunter2\n",
+                             "password:\n  - a\n  - hunter2\n",
+                             "password:\n- hunter2\n",
+                             "password: \"a\n  hunter2\"\n",
+                             "private_key: | # comment\n  hunter2\n",
+                             "credentials: |\n  hunter2\n",
+                             "community: >-\n  hunter2\n",
+                             "password_hash: |\n  hunter2\n",
+                             "mqttPassword: hunter2",
+                             "accessToken: hunter2",
+                             "passwords: [hunter2]",
+                             "tokens: hunter2",
+                             "AWS_SECRET_ACCESS_KEY=hunter2",
+                             "secret_key: hunter2",
+                             "password2: hunter2"}) {
+        const auto clean = masked(text);
+        EXPECT_THAT(clean.text, Not(HasSubstr("hunter2"))) << text;
+        EXPECT_THAT(clean.where, Not(IsEmpty())) << text;
+    }
+}
+
+TEST(Mask, WhatIsNoDeeperThanTheKeyIsNotOfItsValue) {
+    EXPECT_EQ(masked("- secret: x\n  port: 1\n- name: a\n").text, "- secret: <masked>\n  port: 1\n- name: a\n");
+    EXPECT_EQ(masked("password:\nport: 1\n").text, "password:\nport: 1\n");
+}
+
 TEST(Mask, WhatStandsBesideItStays) {
     EXPECT_EQ(masked("{user: plc, password: hunter2, port: 1883}").text, "{user: plc, password: <masked>, port: 1883}");
     EXPECT_EQ(masked("a: 1\npassword: \"x y\"  # of the broker\nb: 2\n").text, "a: 1\npassword: \"<masked>\"  # of the broker\nb: 2\n");

@@ -134,6 +134,36 @@ TEST_F(Delivered, ADriverThatRefusesIsSaidAndLeavesNothingToTakeBack) {
 }
 
 // The way back is on the disk before anything changes: where it cannot be written, nothing is.
+// ethtool(8): drivers round. What is there then is ours as well, and what was there before is not forgotten.
+TEST_F(Delivered, AValueThatADriverRoundsIsSaidAndTakenBack) {
+    ports.least_us = 3;
+    const auto done = changes().apply(wanted_by(host, ports));
+    ASSERT_TRUE(done.ok()) << done.error().text();
+    const auto rounded =
+        std::find_if(done->begin(), done->end(), [](const auto& one) { return one.error && one.error->code == "doctor.not_taken"; });
+    ASSERT_NE(rounded, done->end());
+    EXPECT_THAT(rounded->error->text(), HasSubstr("it says 3"));
+    EXPECT_EQ(ports.settings["eth1"].receive_us, 3u);
+    ports.least_us = 0;
+    ASSERT_TRUE(changes().revert().ok());
+    EXPECT_EQ(ports.settings["eth1"].receive_us, 60u);
+}
+
+// Whoever may run --apply is root, who has every right: they are made for others.
+TEST_F(Delivered, RightsAreMadeForOthersAlsoWhereRootHasThem) {
+    host.put("/proc/self/status", "CapEff:\t000001ffffffffff\n").put("/dev/cpu_dma_latency", "");
+    const auto targets = [&](bool of_others) {
+        Wanted wanted{1ms, 100us, 3};
+        wanted.of_others = of_others;
+        std::string all;
+        for (const auto& finding : host_findings(host_facts(host.files(), 3), wanted))
+            for (const auto& change : finding.changes) all += change.target + " ";
+        return all;
+    };
+    EXPECT_THAT(targets(true), ::testing::AllOf(HasSubstr("limits.d/60-taktwerk.conf"), HasSubstr("60-taktwerk-latency.rules")));
+    EXPECT_THAT(targets(false), ::testing::Not(HasSubstr("limits.d"))) << "the control";
+}
+
 TEST_F(Delivered, WithoutARecordNothingIsChanged) {
     host.put("/var/lib/taktwerk/doctor", "a file where the folder should be");
     const auto done = changes().apply(wanted_by(host, ports));

@@ -1,6 +1,7 @@
 #pragma once
 // A computer as a tree of invented files, and network ports that are asked and set in memory.
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -136,6 +137,7 @@ class MemoryPorts final : public EthernetPorts {
 public:
     std::map<std::string, EthernetSettings> settings;
     bool refuses = false;
+    std::uint32_t least_us = 0;  ///< a driver that takes no less, and says so only when it is asked
 
     [[nodiscard]] EthernetSettings read(const std::string& interface) const override {
         const auto found = settings.find(interface);
@@ -145,7 +147,7 @@ public:
         if (refuses) return Error{"doctor.ethernet", interface, "its driver does not take it", ""};
         auto& s = settings[interface];
         switch (knob) {
-            case EthernetKnob::receive_us: s.receive_us = value; break;
+            case EthernetKnob::receive_us: s.receive_us = std::max(value, least_us); break;
             case EthernetKnob::send_us: s.send_us = value; break;
             case EthernetKnob::adaptive_receive: s.adaptive_receive = value != 0; break;
             case EthernetKnob::energy_efficient: s.energy_efficient = value != 0; break;

@@ -306,6 +306,35 @@ TEST(GroupMotion, AWaitHasItsPlaceBetweenMoves) {
 }
 
 // G-066, G-067, G-068, G-069.
+// In the last ramp a stop is the way that runs anyway: whatever holds there, and whenever, the command comes to its end, exactly.
+TEST(GroupMotion, HeldAtAnyCycleOfItsLastRampItEndsWhereItWasToEnd) {
+    int held = 0;
+    for (int cycle = 500; cycle < 1200; cycle += 7) {
+        for (const bool by_override : {true, false}) {
+            GroupRig rig(2);
+            rig.enable();
+            const auto move = rig.give(line({60, 80}, 100));
+            rig.run(cycle);
+            if (rig.status(move.id) != CommandStatus::active) continue;
+            ++held;
+            if (by_override) {
+                ASSERT_EQ(rig.set(Override{0, 1, 1}), ErrorId::none);
+                rig.run(600);
+                ASSERT_EQ(rig.set(Override{1, 1, 1}), ErrorId::none);
+            } else {
+                (void)rig.give(simply(GroupCommandKind::interrupt));
+                rig.run(600);
+                if (rig.status(move.id) == CommandStatus::queued) (void)rig.give(simply(GroupCommandKind::resume));
+            }
+            ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000))
+                << cycle << (by_override ? " override" : " interrupt");
+            EXPECT_EQ(rig.point()[0], 60) << cycle;
+            EXPECT_EQ(rig.point()[1], 80) << cycle;
+        }
+    }
+    EXPECT_GT(held, 40);
+}
+
 TEST(GroupMotion, AnInterruptedWayGoesOnFromWhereItStopped) {
     GroupRig rig(2);
     rig.enable();

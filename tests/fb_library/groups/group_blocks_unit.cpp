@@ -223,6 +223,37 @@ TEST(GroupBlocks, AnErrorIsReadUntilItIsReset) {
 }
 
 // G-008
+// Who leaves the group while the block has Enable is let go by it, and does not stay under power with nobody to take it away.
+TEST(GroupBlocks, PowerLetsGoWhoLeavesTheGroup) {
+    GroupPlc plc({group_axis("x"), group_axis("y")}, {{.name = "g"}});
+    MC_AddAxisToGroup add_x, add_y;
+    add_x.Axis = {0};
+    add_x.IdentInGroup = 1;
+    add_y.Axis = {1};
+    add_y.IdentInGroup = 2;
+    plc.carry_out(add_x);
+    plc.carry_out(add_y);
+    plc.rig.powered = {false, false};
+    MC_GroupPower power;
+    power.AxesGroup = plc.group;
+    power.Enable = true;
+    MC_RemoveAxisFromGroup remove;
+    remove.AxesGroup = plc.group;
+    remove.IdentInGroup = 2;
+    plc.program = [&](const MotionContext& ctx) {
+        power(ctx);
+        remove(ctx);
+    };
+    ASSERT_TRUE(plc.until([&] { return power.Status; }, 50));
+    ASSERT_EQ(plc.rig.axis(1).state, axes::AxisState::Standstill) << "the control: it has power";
+    remove.Execute = true;
+    ASSERT_TRUE(plc.until([&] { return remove.Done; }, 50));
+    ASSERT_TRUE(plc.until([&] { return plc.rig.axis(1).state == axes::AxisState::Disabled; }, 50));
+    EXPECT_EQ(plc.rig.axis(0).state, axes::AxisState::Standstill) << "who stays keeps it";
+    power.Enable = false;
+    ASSERT_TRUE(plc.until([&] { return plc.rig.axis(0).state == axes::AxisState::Disabled; }, 50));
+}
+
 TEST(GroupBlocks, PowerIsALevelOverAllMembers) {
     EnabledPlc plc(2);
     plc.rig.powered = {false, false};
