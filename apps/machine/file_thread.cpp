@@ -43,8 +43,9 @@ struct FileThread::Shared {
     }
 };
 
-FileThread::FileThread(std::function<Result<void>()> drain, std::function<Result<void>()> close, std::function<void(const Error&)> failed)
-    : shared_(std::make_shared<Shared>()) {
+FileThread::FileThread(std::string what, std::function<Result<void>()> drain, std::function<Result<void>()> close,
+                       std::function<void(const Error&)> failed)
+    : what_(std::move(what)), shared_(std::make_shared<Shared>()) {
     shared_->drain = std::move(drain);
     shared_->close = std::move(close);
     shared_->failed = std::move(failed);

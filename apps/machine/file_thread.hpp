@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <thread>
 
 #include "core/result.hpp"
@@ -13,9 +14,10 @@ namespace taktwerk::apps {
 
 class FileThread {
 public:
-    /// `drain` writes what waits, again and again; its first error goes to `failed`, at once, and ends the draining. `close` is the last
+    /// `what`: "the trace", for sentences. `drain` writes what waits, again and again; its first error goes to `failed`, at once, and ends the draining. `close` is the last
     /// thing that happens, on the thread too: closing a file may wait as well.
-    FileThread(std::function<Result<void>()> drain, std::function<Result<void>()> close, std::function<void(const Error&)> failed);
+    FileThread(std::string what, std::function<Result<void>()> drain, std::function<Result<void>()> close,
+               std::function<void(const Error&)> failed);
     ~FileThread();  ///< waits for it
     FileThread(const FileThread&) = delete;
     FileThread& operator=(const FileThread&) = delete;
@@ -24,9 +26,11 @@ public:
     /// A last drain and the end of the file. `hangs`: the disk did not take it within `patience`; the thread stays in the kernel, and what it
     /// uses must live as long as the process.
     [[nodiscard]] End finish(Duration patience);
+    [[nodiscard]] const std::string& what() const { return what_; }
 
 private:
     struct Shared;
+    std::string what_;
     std::shared_ptr<Shared> shared_;
     std::thread thread_;
 };

@@ -162,17 +162,18 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     const DoorKeeper door{(*bridge)->door(), clock, of_cycle > 1 ? std::optional<int>{of_cycle - 1} : std::nullopt};
     const ModbusKeeper modbus_clients{(*bridge)->modbus_server(), clock};
     std::vector<std::unique_ptr<FileThread>> writers;
-    const auto write_beside = [&](const char* what, auto file) {
+    const auto write_beside = [&](const char* what, std::string name, auto file) {
         if (file)
-            writers.push_back(std::make_unique<FileThread>([file] { return Result<void>(file->drain()); },
-                                                           [file] { return Result<void>(file->finish()); },
-                                                           [&, what](const Error& error) { log.say(clock.now(), what, error.text()); }));
+            writers.push_back(std::make_unique<FileThread>(
+                std::move(name), [file] { return Result<void>(file->drain()); }, [file] { return Result<void>(file->finish()); },
+                [&, what](const Error& error) { log.say(clock.now(), what, error.text()); }));
     };
     if (files.trace) files.trace->count_from(start);
-    write_beside("trace", files.trace);
-    write_beside("pcap", files.capture);
+    write_beside("trace", "the trace", files.trace);
+    write_beside("pcap", "the capture of frames", files.capture);
     if (files.evidence)
         writers.push_back(std::make_unique<FileThread>(
+            "frames around alarms",
             [&log, &clock, evidence = files.evidence] {
                 say_evidence(log, clock.now(), evidence->write_due(clock.now()));
                 return Result<void>{};
@@ -184,6 +185,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
             [](const Error&) {}));
     if (files.recorder)
         writers.push_back(std::make_unique<FileThread>(
+            "recordings around alarms",
             [&log, &clock, recorder = files.recorder] {
                 say_recording(log, clock.now(), recorder->work());
                 return Result<void>{};
@@ -202,6 +204,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         (*bridge)->keep(history);
         if (!place.remark.empty() && !options.quiet) say(place.remark);
         writers.push_back(std::make_unique<FileThread>(
+            "the alarm history",
             [history, &clock] {
                 history->work(clock.now());
                 return Result<void>{};
@@ -214,6 +217,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     }
     if (const auto bundle = options.from_bundle)
         writers.push_back(std::make_unique<FileThread>(
+            "the record of the bundle",
             [&log, &clock, bundle, noted = false]() mutable {
                 note_bundle(log, clock.now(), *bundle, noted);
                 return Result<void>{};
@@ -223,10 +227,15 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
                 return Result<void>{};
             },
             [](const Error&) {}));
-    const auto files_written = [&] {
-        auto worst = FileThread::End::complete;
-        for (auto& writer : writers) worst = std::max(worst, writer->finish(file_patience));
-        return worst;
+    auto written = FileThread::End::complete;  // the worst of all
+    const auto not_taken = [&] {               // what hangs in a disk
+        std::string what;
+        for (auto& writer : writers) {
+            const auto end = writer->finish(file_patience);
+            if (end == FileThread::End::hangs) what += (what.empty() ? "" : ", ") + writer->what();
+            written = std::max(written, end);
+        }
+        return what;
     };
 
     std::unique_ptr<PageServer> page;
@@ -242,6 +251,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     RealtimeRunner runner{machine, world};
     if (files.recording) {
         writers.push_back(std::make_unique<FileThread>(
+            "the record of the run",
             [&log, &clock, &options, recording = files.recording] {
                 say_recorded(log, clock.now(), *recording, options.quiet);
                 return Result<void>{};
@@ -263,7 +273,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     };
     // What hangs holds a thread that cannot be taken back: the process ends as it is, and the drives fall to their watchdogs.
     runner.give_up = [&](const Error& error) {
-        (void)files_written();
+        (void)not_taken();
         out.finish(last_lines_patience);
         say_directly(error);
         std::_Exit(exit_hung);
@@ -319,14 +329,11 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     runner.finish();
     if (served) ended_in_order();  // whatever becomes of the files
     page.reset();
-    const auto written = files_written();
-    if (written == FileThread::End::hangs) {
+    if (const auto hangs = not_taken(); !hangs.empty()) {
         // Its thread hangs in the kernel and holds what it writes from: nothing of this process can be taken down any more.
         out.finish(last_lines_patience);
-        say_directly(
-            {"run.disk_hangs", "run",
-             "the machine is down, but a disk does not take the rest of what it writes: trace, capture, recordings or alarm history",
-             "Look at that disk; the file is not complete."});
+        say_directly({"run.disk_hangs", "run", "the machine is down, but a disk does not take the rest of " + hangs,
+                      "Look at that disk; the file is not complete."});
         std::_Exit(exit_bad_file);
     }
     files.say_frames(options.quiet || options.json, put);
