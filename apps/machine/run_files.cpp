@@ -31,8 +31,8 @@ Result<void> RunFiles::open(runtime::Machine& machine, Duration epoch) {
         if (!opened) return opened.error();
         evidence = std::move(*opened);
     }
-    if (const auto& recording = machine.config().recording; !recording.directory.empty() && recording.files > 0) {
-        auto opened = runtime::FlightRecorder::open(machine, recording.directory, epoch);
+    if (const auto& wanted = machine.config().recording; !wanted.directory.empty() && wanted.files > 0) {
+        auto opened = runtime::FlightRecorder::open(machine, wanted.directory, epoch);
         if (!opened) return opened.error();
         recorder = std::move(*opened);
     }
