@@ -87,31 +87,28 @@ Result<std::string> RunMemory::keep(Instant now) {
 RunMemory::State RunMemory::state() const {
     const std::scoped_lock lock{mutex_};
     const bool waits = !wishes_.empty() || writing_;
-    return {std::max(until_, place_.start) - place_.start, in_memory_, on_disk_, kept_ || waits ? path_ : "", waits, ended_};
+    return {std::max(until_, place_.start) - place_.start, blocks_.bytes(), on_disk_, kept_ || waits ? path_ : "", waits, ended_};
 }
 
 // --- a thread that may wait ------------------------------------------------------------------------------------------------------------
 
-void RunMemory::take(PackedBlock block, Instant until, std::uint64_t lost) {
+void RunMemory::take(const PackedBlock& block, Instant until, std::uint64_t lost) {
     const std::scoped_lock lock{mutex_};
     lost_ = lost;
     if (lost > 0 && !ended_) {
         blocks_.clear();
-        in_memory_ = 0;
         ended_ = Error{"recording.lost", place_.machine,
                        fmt::format("{} records of the run did not get here: from there on nothing is certain", lost),
                        "This computer has no time for it: look at its load, or write `recording: {replay: false}`"};
     }
     if (ended_) return;
-    in_memory_ += block.bytes.size();
     until_ = until;
-    blocks_.push_back(std::move(block));
+    blocks_.push(block);
 }
 
 Error RunMemory::end(Error why) {
     const std::scoped_lock lock{mutex_};
     blocks_.clear();
-    in_memory_ = 0;
     ended_ = why;
     return why;
 }
@@ -127,9 +124,7 @@ Result<void> RunMemory::write_blocks(const std::string& path, bool wished) {
         {
             const std::scoped_lock lock{mutex_};
             if (blocks_.empty()) return {};
-            block = std::move(blocks_.front());
-            blocks_.pop_front();
-            in_memory_ -= block.bytes.size();
+            block = blocks_.pop();
         }
         auto done = file_->write(block);
         {
@@ -217,7 +212,7 @@ Result<RunMemory::Kept> RunMemory::work() {
             return Error{"recording.ended", due->why.empty() ? place_.machine : due->why,
                          fmt::format("what led to it cannot be replayed: {}", ended_->what), ended_->remedy};
         writing_ = due.has_value();
-        full = in_memory_ > room_.memory;
+        full = blocks_.bytes() > room_.memory;
         if (full && path_.empty()) path_ = path_for("run", place_.start);
         path = path_;
     }

@@ -22,6 +22,7 @@
 #include "core/time.hpp"
 #include "runtime/new_alarms.hpp"
 #include "runtime/recording_file/recording_file.hpp"
+#include "runtime/run_memory/block_queue.hpp"
 
 namespace taktwerk::runtime {
 
@@ -60,7 +61,7 @@ public:
 
     // --- a thread that may wait ------------------------------------------------------------------------------------------------------
     /// The next block of the run; `until`: of its last record. `lost`: records that did not get into the ring so far.
-    void take(PackedBlock block, Instant until, std::uint64_t lost);
+    void take(const PackedBlock& block, Instant until, std::uint64_t lost);
     struct Kept {
         std::string path;  ///< empty: nothing was due
         std::string why;   ///< the alarm; empty: somebody asked
@@ -96,8 +97,7 @@ private:
     NewAlarms alarms_;             // service side
 
     mutable std::mutex mutex_;  // of what both sides see
-    std::deque<PackedBlock> blocks_;
-    std::uint64_t in_memory_ = 0;
+    BlockQueue blocks_;
     Instant until_{};
     std::deque<Wish> wishes_;
     std::optional<Error> ended_;
