@@ -95,7 +95,8 @@ void RunMemory::wish(Wish more) {
 RunMemory::State RunMemory::state() const {
     const std::scoped_lock lock{mutex_};
     const bool waits = !wishes_.empty() || writing_;
-    return {std::max(until_, place_.start) - place_.start, in_memory_, on_disk_, kept_ || waits ? path_ : "", waits, ended_};
+    const bool asked = writing_ || std::ranges::any_of(wishes_, [](const Wish& wish) { return wish.why.empty(); });
+    return {std::max(until_, place_.start) - place_.start, in_memory_, on_disk_, kept_ || waits ? path_ : "", waits, asked, ended_};
 }
 
 // --- a thread that may wait ------------------------------------------------------------------------------------------------------------

@@ -55,6 +55,7 @@ public:
         std::uint64_t memory = 0, disk = 0;
         std::string file;            ///< where the run is kept, or will be once `waits` is over; empty: nowhere
         bool waits = false;          ///< its last seconds are still to come
+        bool asked_waits = false;    ///< what somebody has asked for is not there yet
         std::optional<Error> ended;  ///< nothing more is taken, and why
     };
     [[nodiscard]] State state() const;

@@ -279,10 +279,14 @@ TEST_F(RunOfAMachine, WhoAsksDoesNotWaitForWhatComesBehindAnAlarm) {
     machine->run(200ms);
     drive_fault("x");
     machine->run(50ms);
+    EXPECT_FALSE(memory->state().asked_waits);
     ASSERT_TRUE(memory->keep(machine->clock.now()).ok());
+    EXPECT_TRUE(memory->state().asked_waits);
     machine->run(150ms);
     ASSERT_EQ(kept.size(), 1u);
     EXPECT_EQ(kept[0].why, "") << "asked for";
+    EXPECT_FALSE(memory->state().asked_waits);
+    EXPECT_TRUE(memory->state().waits) << "what comes behind the alarm";
     machine->run(500ms);
     ASSERT_EQ(kept.size(), 2u);
     EXPECT_EQ(kept[1].why, "drive_fault");
