@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -127,6 +128,9 @@ Result<void> Changes::record(const std::vector<AppliedChange>& all) const {
     const auto path = below(record_path);
     std::error_code failed;
     std::filesystem::create_directories(path.parent_path(), failed);
+    if (failed && !all.empty())
+        return Error{"doctor.record", path.string(), "cannot be written: " + failed.message() + "; nothing was changed",
+                     "see who may write there, and whether there is room"};
     if (all.empty()) {
         std::filesystem::remove(path, failed);
         std::filesystem::remove(path.parent_path(), failed);
@@ -224,6 +228,17 @@ Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<HostChange>&
         }
         done.push_back(std::move(outcome));
     }
+    return done;
+}
+
+Result<std::vector<ChangeOutcome>> Changes::apply_together(const std::vector<HostChange>& wanted) {
+    std::vector<HostChange> for_next_start, for_now;
+    for (const auto& change : wanted) (change.kind == HostChange::Kind::file ? for_next_start : for_now).push_back(change);
+    auto done = apply(for_next_start);
+    if (!done || std::any_of(done->begin(), done->end(), [](const auto& outcome) { return outcome.error.has_value(); })) return done;
+    auto more = apply(for_now);
+    if (!more) return more;
+    done->insert(done->end(), std::make_move_iterator(more->begin()), std::make_move_iterator(more->end()));
     return done;
 }
 

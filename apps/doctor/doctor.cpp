@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -107,23 +108,26 @@ int revert(const DoctorOptions& options, EthernetPorts& ports) {
 /// `told`: of --json, what it says in the end.
 int apply(const DoctorOptions& options, const Examination& seen, EthernetPorts& ports, Json& told) {
     if (const auto why = why_not(options, {})) return refused(options, *why, exit_refused);
-    std::vector<HostChange> wanted;
-    for (const auto& finding : seen.findings) wanted.insert(wanted.end(), finding.changes.begin(), finding.changes.end());
-    const auto done = Changes{"/", ports}.apply(wanted);
-    if (!done) return refused(options, done.error(), exit_bad_file);
+    Changes changes{"/", ports};
+    std::vector<ChangeOutcome> done;
+    for (const auto& finding : seen.findings) {
+        auto some = changes.apply_together(finding.changes);
+        if (!some) return refused(options, some.error(), exit_bad_file);
+        done.insert(done.end(), std::make_move_iterator(some->begin()), std::make_move_iterator(some->end()));
+    }
     std::vector<std::string> commands;
     for (const auto& finding : seen.findings)
         if (!finding.changes.empty() && !finding.then.empty()) commands.push_back(finding.then);
-    told = Json{{"ok", all_done(*done)}, {"changed", json_of(*done)}, {"takes_effect_with", commands}};
+    told = Json{{"ok", all_done(done)}, {"changed", json_of(done)}, {"takes_effect_with", commands}};
     if (!options.json) {
         fmt::print("Changed (`taktwerk doctor --revert` takes it back):\n");
-        say(*done, "nothing: what can be changed from here is as it should be");
+        say(done, "nothing: what can be changed from here is as it should be");
         for (const auto& command : commands) fmt::print("  takes effect with: {}\n", command);
         fmt::print("\n");
-    } else if (!all_done(*done)) {
+    } else if (!all_done(done)) {
         print_json(told);
     }
-    return all_done(*done) ? exit_ok : exit_bad_file;
+    return all_done(done) ? exit_ok : exit_bad_file;
 }
 
 int run_doctor(const DoctorOptions& options) {

@@ -150,6 +150,22 @@ TEST_F(Delivered, AFileKeepsItsRights) {
     EXPECT_EQ(rights(), std::filesystem::perms{0600});
 }
 
+// A folder stands where the file should be. A setting of now alone would be gone with a restart, and the doctor would find nothing wrong until then.
+TEST_F(Delivered, WhatCannotBeForTheNextStartIsNotForNowEither) {
+    host.put("/etc/sysctl.d/60-x.conf/in_the_way", "").put("/proc/sys/vm/compact_unevictable_allowed", "1\n");
+    const HostChange now{HostChange::Kind::knob, "/proc/sys/vm/compact_unevictable_allowed", "0"};
+    const auto done = changes().apply_together({now, {HostChange::Kind::file, "/etc/sysctl.d/60-x.conf", "x\n"}});
+    ASSERT_TRUE(done.ok());
+    ASSERT_EQ(done->size(), 1u);
+    EXPECT_TRUE(done->front().error.has_value());
+    EXPECT_EQ(host.text("/proc/sys/vm/compact_unevictable_allowed"), "1\n");
+
+    const auto both = changes().apply_together({now, {HostChange::Kind::file, "/etc/sysctl.d/60-y.conf", "y\n"}});
+    ASSERT_TRUE(both.ok());
+    EXPECT_EQ(both->size(), 2u) << "the control";
+    EXPECT_EQ(host.text("/proc/sys/vm/compact_unevictable_allowed"), "0\n");
+}
+
 TEST_F(Delivered, WhatIsNotThereAnyMoreIsForgotten) {
     ASSERT_TRUE(changes().apply({{HostChange::Kind::knob, "/proc/sys/net/core/rmem_max", "2097152"}}).ok());
     std::filesystem::remove(host.at("/proc/sys/net/core/rmem_max"));
