@@ -13,6 +13,7 @@
 
 #include "apps/doctor/changes.hpp"
 #include "apps/doctor/examine.hpp"
+#include "apps/doctor/host_files.hpp"
 #include "apps/machine/running_machine.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
