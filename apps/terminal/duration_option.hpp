@@ -12,7 +12,8 @@ namespace taktwerk::apps {
 /// `seconds` keeps its value when the option is not given.
 inline CLI::Option* add_duration(CLI::App& app, const std::string& name, double& seconds, const std::string& doc) {
     return app.add_option(name, seconds, doc)
-        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}}))
+        ->transform(
+            CLI::AsNumberWithUnit(std::map<std::string, double>{{"us", 1e-6}, {"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}}))
         ->check(CLI::Validator(
             [](const std::string& value) {
                 constexpr double longest = 1e8;  // three years, and what a clock counts
