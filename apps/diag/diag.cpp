@@ -113,6 +113,11 @@ int run_diag(const DiagOptions& options) {
     Gathered all;
     auto wanted = options.machine;
     std::string interface = options.interface;
+    if (std::error_code ignored; !options.file.empty() && !std::filesystem::is_regular_file(options.file, ignored)) {
+        print_error(
+            {"diag.no_file", options.file, ignored ? ignored.message() : "it is no file", "give the path of its machine file, or none"});
+        return exit_bad_file;
+    }
     if (!options.file.empty()) {
         const auto loaded = read_machine_without_programs(options.file, false);
         if (const auto* machine = std::get_if<LoadedFile>(&loaded)) {
@@ -121,13 +126,21 @@ int run_diag(const DiagOptions& options) {
         }
     }
     auto client = hmi::Client::connect(wanted);
+    bool answers = client.ok();
     if (client) {
+        // Until it says so itself: it may hang.
+        all.machine = std::filesystem::path(client->path()).stem().string();
         const auto done = understood(client->path(), [&] {
             const auto hello = client->request({{"cmd", "hello"}});
+            if (!hello && hello.error().code == "socket.timeout") {
+                all.missing.push_back("everything that a running machine says: " + hello.error().text());
+                answers = false;
+                return 0;
+            }
             if (hello) all.machine = hello->value("hello", nlohmann::ordered_json::object()).value("machine", "");
             const auto layout = client->request({{"cmd", "layout"}});
             if (layout && interface.empty()) interface = layout->value("layout", nlohmann::ordered_json::object()).value("interface", "");
-            gather_running(all, *client);
+            answers = gather_running(all, *client);
             return 0;
         });
         if (!done) all.missing.push_back(done.error().text());
@@ -140,9 +153,10 @@ int run_diag(const DiagOptions& options) {
         all.missing.push_back("state, statistics, bus counters, log: " + client.error().text());
     }
     const auto file = !options.file.empty() ? options.file : service_file(all.machine);
-    if (!file.empty()) gather_files(all, file, client.ok());
+    if (!file.empty()) gather_files(all, file, answers);
     else all.missing.push_back("machine file: not known; `taktwerk diag MACHINE.yaml` packs it");
     gather_host(all, interface);
+    mask_reasons(all);
 
     const auto name = all.machine.empty() ? std::string("host") : all.machine;
     const auto stamped = runtime::stamped_name(name, std::chrono::microseconds{hmi::wall_utime()}, "diag", "");

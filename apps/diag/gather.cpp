@@ -1,13 +1,17 @@
 #include "apps/diag/gather.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -27,11 +31,38 @@ namespace fs = std::filesystem;
 
 constexpr const char* state_folder = "/var/lib/taktwerk";
 
+/// Of a regular file of a size that goes in: nobody waits for a pipe, and a device has no end.
 std::optional<std::string> whole_file(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return std::nullopt;
-    return std::string{std::istreambuf_iterator<char>(file), {}};
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (file < 0) return std::nullopt;
+    struct stat info {};
+    bool ok = ::fstat(file, &info) == 0 && S_ISREG(info.st_mode);
+    std::string all;
+    std::array<char, 65536> some;
+    while (ok && all.size() <= most_recording_bytes) {
+        const auto got = ::read(file, some.data(), some.size());
+        if (got < 0 && errno == EINTR) continue;
+        ok = got >= 0;
+        if (got <= 0) break;
+        all.append(some.data(), static_cast<std::size_t>(got));
+    }
+    ::close(file);
+    return ok && all.size() <= most_recording_bytes ? std::optional{std::move(all)} : std::nullopt;
 }
+
+std::string free_path(const Gathered& all, const std::string& path) {
+    const auto taken = [&](const std::string& wanted) {
+        return std::any_of(all.parts.begin(), all.parts.end(), [&](const DiagPart& part) { return part.path == wanted; });
+    };
+    const fs::path whole(path);
+    auto wished = path;
+    for (int i = 2; taken(wished); ++i)
+        wished = (whole.parent_path() / fmt::format("{}.{}{}", whole.stem().string(), i, whole.extension().string())).string();
+    return wished;
+}
+
+/// A machine that does not answer one question in time answers no other one either, and each would take as long.
+bool hangs(const Error& error) { return error.code == "socket.timeout"; }
 
 bool is_plain(std::string_view name) {
     return !name.empty() && name.front() != '-' &&
@@ -57,10 +88,15 @@ std::optional<std::string> from_base64(const std::string& text) {
     return out;
 }
 
-void ask(Gathered& all, hmi::Client& client, const char* question, const char* about) {
+/// False: it hangs.
+bool ask(Gathered& all, hmi::Client& client, const char* question, const char* about) {
     const auto answer = client.request({{"cmd", question}});
-    if (!answer) return all.missing.push_back(fmt::format("{}: {}", about, answer.error().text()));
+    if (!answer) {
+        all.missing.push_back(fmt::format("{}: {}", about, answer.error().text()));
+        return !hangs(answer.error());
+    }
     add_text(all, fmt::format("running/{}.json", question), about, answer->dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return true;
 }
 
 void gather_log(Gathered& all, hmi::Client& client) {
@@ -169,21 +205,31 @@ std::string versions(const HostFiles& host) {
 }  // namespace
 
 void add_text(Gathered& all, std::string path, std::string about, std::string text) {
-    if (text.size() > most_text_bytes) {
-        const auto line = text.find('\n', text.size() - most_text_bytes);
-        text = text.substr(line == std::string::npos ? text.size() - most_text_bytes : line + 1);
-        about += fmt::format(" (its last {} MB)", most_text_bytes >> 20);
-    }
+    // Masked first: behind a cut a secret would stand without its key.
     auto clean = masked(text);
-    all.parts.push_back({std::move(path), std::move(about), std::move(clean.text), std::move(clean.where)});
+    if (clean.text.size() > most_text_bytes) {
+        const auto from = clean.text.size() - most_text_bytes;
+        const auto line = clean.text.find('\n', from);
+        clean.text = clean.text.substr(line == std::string::npos ? from : line + 1);
+        about += fmt::format(" (its last {} MB; lines that are masked are counted from its beginning)", most_text_bytes >> 20);
+    }
+    all.parts.push_back({free_path(all, path), std::move(about), std::move(clean.text), std::move(clean.where)});
 }
 
-void gather_running(Gathered& all, hmi::Client& client) {
-    ask(all, client, "hello", "what runs");
-    ask(all, client, "state", "everything that people see: axes, points, programs, bus and cycle counters, alarms");
-    ask(all, client, "layout", "names, units, limits");
-    ask(all, client, "histograms", "times of cycle, steps and tasks");
-    ask(all, client, "bus", "the tree of slaves with their counters");
+void mask_reasons(Gathered& all) {
+    for (auto& reason : all.missing) reason = masked(reason).text;
+}
+
+bool gather_running(Gathered& all, hmi::Client& client) {
+    constexpr std::array questions{std::pair{"hello", "what runs"},
+                                   std::pair{"state", "everything that people see: axes, points, programs, bus and cycle counters, alarms"},
+                                   std::pair{"layout", "names, units, limits"}, std::pair{"histograms", "times of cycle, steps and tasks"},
+                                   std::pair{"bus", "the tree of slaves with their counters"}};
+    for (const auto& [question, about] : questions)
+        if (!ask(all, client, question, about)) {
+            all.missing.push_back("everything else that a running machine says: it does not answer, and was not asked any more");
+            return false;
+        }
     const auto history = client.request({{"cmd", "alarm_history"}, {"limit", 500}}, std::chrono::seconds{8});
     if (history)
         add_text(all, "running/alarm_history.json", "the newest 500 alarms",
@@ -191,6 +237,7 @@ void gather_running(Gathered& all, hmi::Client& client) {
     else all.missing.push_back("alarm history: " + history.error().text());
     gather_log(all, client);
     gather_recordings(all, client);
+    return true;
 }
 
 void gather_files(Gathered& all, const std::string& machine_file, bool runs) {
@@ -203,6 +250,7 @@ void gather_files(Gathered& all, const std::string& machine_file, bool runs) {
         std::string said;
         for (const auto& problem : *problems) said += problem.text() + "\n";
         add_text(all, "machine/problems.txt", "what is wrong in it", std::move(said));
+        if (!runs && !all.machine.empty()) gather_kept(all);
         return;
     }
     const auto& machine = std::get<LoadedFile>(loaded);
@@ -210,7 +258,8 @@ void gather_files(Gathered& all, const std::string& machine_file, bool runs) {
     for (const auto& used : machine.files) {
         if (used.kind == config::UsedFile::Kind::program || used.kind == config::UsedFile::Kind::image) continue;
         if (auto found = whole_file(used.path); found && found->size() <= most_text_bytes)
-            add_text(all, "machine/" + fs::path(used.path).filename().string(), "a file that it names", std::move(*found));
+            add_text(all, "machine/" + fs::path(used.path).filename().string(), fmt::format("a file that it names: {}", used.path),
+                     std::move(*found));
         else all.missing.push_back(used.path + ": cannot be read");
     }
     if (!runs) gather_kept(all);

@@ -28,11 +28,14 @@ inline constexpr std::size_t most_recording_bytes = 64u << 20;
 /// Of a text that grows (a log), its end.
 inline constexpr std::size_t most_text_bytes = 4u << 20;
 
-/// A part whose secrets are masked; a longer text loses its beginning.
+/// A part whose secrets are masked; then a longer text loses its beginning. Where its path is taken it gets a number.
 void add_text(Gathered& all, std::string path, std::string about, std::string text);
 
-/// State, layout, statistics, histograms, bus, alarms, log, recordings of a machine that runs.
-void gather_running(Gathered& all, hmi::Client& client);
+/// What a reason quotes may be a secret as well. Last of all.
+void mask_reasons(Gathered& all);
+
+/// State, layout, statistics, histograms, bus, alarms, log, recordings of a machine that runs. False: it does not answer, and is not asked again.
+bool gather_running(Gathered& all, hmi::Client& client);
 /// The machine file and the files that it names, but for programs; where the machine does not run its recordings and alarm history too.
 void gather_files(Gathered& all, const std::string& machine_file, bool runs);
 /// Versions, what the doctor finds (without measuring), kernel, interrupts, the journal of its unit.

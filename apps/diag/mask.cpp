@@ -13,7 +13,7 @@ constexpr std::size_t longest_line =
 
 const std::string secret_key =
     R"re(((?:(?:[A-Za-z0-9][A-Za-z0-9_-]*)?(?:password|passwd|passphrase|secret|token|credential|private[_-]?key|api[_-]?key)|)re"
-    R"re((?:[A-Za-z0-9]+[_-])*(?:psk|community))s?(?:[_-]?(?:hash|text|value|access|key|\d+))*))re";
+    R"re((?:[A-Za-z0-9]+[_-])*(?:psk|community|pwd|pass|authorization))s?(?:[_-]?(?:hash|text|value|access|key|\d+))*))re";
 
 /// The key, what stands between, the value: quoted (also inside a quoted text) where it ends as a value does, else all that follows.
 const std::regex& secret() {
@@ -49,13 +49,35 @@ bool in_flow(const std::string& line, std::size_t at) {
     return count('{') > count('}') || count('[') > count(']');
 }
 
+/// Of a value in `{...}` or `[...]`: up to the comma or bracket that is not its own. A list or a map of secrets is one value.
+std::size_t flow_length(std::string_view value) {
+    int deep = 0;
+    char quote = 0;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const char c = value[i];
+        if (quote != 0) {
+            if (c == '\\' && quote == '"') ++i;
+            else if (c == quote) quote = 0;
+        } else if ((c == '"' || c == '\'') && deep > 0) {
+            quote = c;
+        } else if (c == '{' || c == '[') {
+            ++deep;
+        } else if (c == '\r' || (deep == 0 && (c == ',' || c == '}' || c == ']'))) {
+            return i;
+        } else if (c == '}' || c == ']') {
+            --deep;
+        }
+    }
+    return value.size();
+}
+
 /// How long the value is that begins at `at`; `quoted`: it ends by itself.
 std::size_t value_length(const std::string& line, std::size_t at, std::size_t found, bool on_command_line) {
     const auto value = std::string_view(line).substr(at, found);
     const bool quoted = value.size() > 1 && (value.front() == '"' || value.front() == '\'') && value.back() == value.front();
     const bool inside_a_text = value.starts_with("\\\"") && value.ends_with("\\\"");
     if (quoted || inside_a_text) return found;
-    const auto ends = on_command_line ? value.find_first_of(" \t\r") : in_flow(line, at) ? value.find_first_of(",}]\r") : value.find('\r');
+    const auto ends = on_command_line ? value.find_first_of(" \t\r") : in_flow(line, at) ? flow_length(value) : value.find('\r');
     return std::min(ends, found);
 }
 
@@ -109,6 +131,7 @@ Masked masked(std::string_view text) {
     constexpr auto none = std::string::npos;
     std::size_t block = none;  // column of the key whose lines follow
     bool list = false;         // and it has no value yet: a list may begin in that column
+    bool armoured = false;     // between the lines that begin and end a private key (RFC 7468), whoever it belongs to
     std::size_t number = 0;
     for (std::size_t at = 0; at < text.size();) {
         const auto end = std::min(text.find('\n', at), text.size());
@@ -117,7 +140,15 @@ Masked masked(std::string_view text) {
         const bool blank = line.find_first_not_of(" \r") == std::string::npos;
         std::smatch begins;
         const auto indent = indent_of(line);
-        if (block != none && !blank && (indent > block || (list && indent == block && line[indent] == '-'))) {
+        const bool marks_key = line.find("PRIVATE KEY-----") != std::string::npos;
+        if (armoured) {
+            armoured = !(marks_key && line.find("-----END") != std::string::npos);
+            result.text += std::string(indent, ' ') + std::string(mask);
+        } else if (marks_key && line.find("-----BEGIN") != std::string::npos) {
+            armoured = line.find("-----END") == std::string::npos;
+            result.where.push_back(fmt::format("line {}: a private key", number));
+            result.text += std::string(indent, ' ') + std::string(mask);
+        } else if (block != none && !blank && (indent > block || (list && indent == block && line[indent] == '-'))) {
             result.text += std::string(indent, ' ') + std::string(mask);
         } else if (line.size() > longest_line) {
             static const std::regex any("password|passwd|passphrase|secret|token|credential|psk|community|private.?key|api.?key|://[^/]*@",

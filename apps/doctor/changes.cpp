@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/doctor/host_files.hpp"
+#include "core/replaced_file.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -25,36 +27,18 @@ Error not_written(const std::filesystem::path& path) {
             "see who may write there, and whether there is room"};
 }
 
-Result<void> write_all(int file, const std::string& text, const std::filesystem::path& path) {
-    std::size_t at = 0;
-    while (at < text.size()) {
-        const auto put = ::write(file, text.data() + at, text.size() - at);
-        if (put < 0 && errno == EINTR) continue;
-        if (put <= 0) return not_written(path);
-        at += static_cast<std::size_t>(put);
-    }
-    return {};
-}
-
-/// The old text or the new one, whatever happens.
 Result<void> replace(const std::filesystem::path& path, const std::string& text) {
-    auto aside = path;
-    aside += ".taktwerk-new";
-    const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
-    if (file < 0) return not_written(aside);
-    auto done = write_all(file, text, aside);
-    if (done && (::fchmod(file, 0644) != 0 || ::fsync(file) != 0)) done = not_written(aside);
-    ::close(file);
-    if (done && ::rename(aside.c_str(), path.c_str()) != 0) done = not_written(path);
-    if (!done) ::unlink(aside.c_str());
-    return done;
+    errno = replace_file(path, text);
+    return errno == 0 ? Result<void>{} : not_written(path);
 }
 
 /// A file of /proc or /sys takes a value whole or not at all.
 Result<void> turn(const std::filesystem::path& path, const std::string& value) {
     const int file = ::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (file < 0) return not_written(path);
-    const auto done = write_all(file, value + "\n", path);
+    const auto line = value + "\n";
+    const auto put = ::write(file, line.data(), line.size());
+    const auto done = put == static_cast<ssize_t>(line.size()) ? Result<void>{} : not_written(path);
     ::close(file);
     return done;
 }
@@ -68,6 +52,13 @@ std::string named(const HostChange& change) {
 }
 
 bool same_place(const HostChange& a, const HostChange& b) { return a.kind == b.kind && a.target == b.target && a.knob == b.knob; }
+
+/// For who wants it back by hand.
+std::string was_before(const AppliedChange& applied) {
+    if (!applied.before) return "before --apply it was not there";
+    return applied.change.kind == HostChange::Kind::file ? fmt::format("what was there before --apply is in {}", record_path)
+                                                         : fmt::format("before --apply it was {}", *applied.before);
+}
 
 /// A number of an interrupt means another device after a restart.
 bool means_something_else(const AppliedChange& applied, const std::string& boot) {
@@ -137,11 +128,17 @@ Result<void> Changes::record(const std::vector<AppliedChange>& all) const {
     const auto path = below(record_path);
     std::error_code failed;
     std::filesystem::create_directories(path.parent_path(), failed);
+    if (failed && !all.empty())
+        return Error{"doctor.record", path.string(), "cannot be written: " + failed.message() + "; nothing was changed",
+                     "see who may write there, and whether there is room"};
     if (all.empty()) {
         std::filesystem::remove(path, failed);
         std::filesystem::remove(path.parent_path(), failed);
+        (void)sync_folder_of(path.parent_path());
         return {};
     }
+    // That there is such a folder has to be on the disk as well, before anything is changed.
+    for (const auto& folder : {path.parent_path(), path.parent_path().parent_path()}) (void)sync_folder_of(folder);
     auto written = replace(path, record_text(all));
     if (written) return {};
     auto error = written.error();
@@ -202,8 +199,11 @@ Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<HostChange>&
         if (!before && change.kind != HostChange::Kind::file) continue;
         const auto old = std::find_if(all.begin(), all.end(), [&](const auto& each) { return same_place(each.change, change); });
         auto next = all;
-        if (old != all.end()) next[static_cast<std::size_t>(old - all.begin())].change.value = change.value;
-        else
+        if (old != all.end()) {
+            auto& known_one = next[static_cast<std::size_t>(old - all.begin())];
+            if (before != old->change.value) known_one.before = before;  // somebody else has changed it since: that is what comes back
+            known_one.change.value = change.value;
+        } else
             next.push_back({change, before,
                             change.kind == HostChange::Kind::file ? missing_folders(change.target) : std::vector<std::string>{}, boot()});
         if (auto written = record(next); !written) return written.error();
@@ -231,6 +231,17 @@ Result<std::vector<ChangeOutcome>> Changes::apply(const std::vector<HostChange>&
     return done;
 }
 
+Result<std::vector<ChangeOutcome>> Changes::apply_together(const std::vector<HostChange>& wanted) {
+    std::vector<HostChange> for_next_start, for_now;
+    for (const auto& change : wanted) (change.kind == HostChange::Kind::file ? for_next_start : for_now).push_back(change);
+    auto done = apply(for_next_start);
+    if (!done || std::any_of(done->begin(), done->end(), [](const auto& outcome) { return outcome.error.has_value(); })) return done;
+    auto more = apply(for_now);
+    if (!more) return more;
+    done->insert(done->end(), std::make_move_iterator(more->begin()), std::make_move_iterator(more->end()));
+    return done;
+}
+
 Result<void> Changes::take_back(const AppliedChange& applied) const {
     if (applied.before) return put(applied.change, *applied.before);
     std::error_code failed;
@@ -239,6 +250,8 @@ Result<void> Changes::take_back(const AppliedChange& applied) const {
         errno = failed.value();
         return not_written(applied.change.target);
     }
+    // Before the record of it goes.
+    (void)sync_folder_of(below(applied.change.target));
     for (const auto& folder : applied.made_folders) std::filesystem::remove(below(folder), failed);  // one that others use by now stays
     return {};
 }
@@ -255,9 +268,12 @@ Result<std::vector<ChangeOutcome>> Changes::revert() {
         ChangeOutcome outcome{fmt::format("{}: ", named(applied.change))};
         if (current == applied.before || means_something_else(applied, boot())) {
             outcome.words += "is as it was already";
+        } else if (!current && applied.change.kind != HostChange::Kind::file) {
+            outcome.words += "is not there any more";
         } else if (current != applied.change.value) {
-            outcome.words += "left alone: somebody else has changed it since";
+            outcome.words += "left alone: somebody else has changed it since; " + was_before(applied);
             outcome.left = true;
+            kept.insert(kept.begin(), applied);
         } else if (auto back = take_back(applied); !back) {
             outcome.words += "not taken back";
             outcome.error = back.error();

@@ -35,7 +35,11 @@ public:
 
     /// What is as wanted already is not mentioned. Errors: doctor.record (nothing was changed).
     [[nodiscard]] Result<std::vector<ChangeOutcome>> apply(const std::vector<HostChange>& wanted);
-    /// The newest first. What somebody else has changed since is left alone and said. Errors: doctor.record.
+    /// The same of what belongs together: first what is for the next start of the computer. Where that cannot be done nothing of it is: a setting of now
+    /// alone would be gone with a restart, and nobody would see it any more.
+    [[nodiscard]] Result<std::vector<ChangeOutcome>> apply_together(const std::vector<HostChange>& wanted);
+    /// The newest first. What somebody else has changed since is left alone and said, and stays recorded: with it what was there before. Errors:
+    /// doctor.record.
     [[nodiscard]] Result<std::vector<ChangeOutcome>> revert();
     /// Errors: doctor.record: the record is there and cannot be understood.
     [[nodiscard]] Result<std::vector<AppliedChange>> recorded() const;

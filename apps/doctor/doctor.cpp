@@ -1,13 +1,19 @@
 // taktwerk doctor: is this computer fit for a machine's cycle, and what would mend it?
 
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "apps/doctor/changes.hpp"
 #include "apps/doctor/examine.hpp"
+#include "apps/doctor/host_files.hpp"
 #include "apps/machine/running_machine.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
@@ -31,52 +37,98 @@ int exit_code_of(Severity fitness) {
     return fitness == Severity::unfit ? exit_realtime : fitness == Severity::warning ? exit_warnings : exit_ok;
 }
 
-/// False: something of it could not be done.
-bool say(const std::vector<ChangeOutcome>& outcomes, const char* nothing) {
-    bool all = true;
-    for (const auto& outcome : outcomes) {
-        fmt::print("  {}\n", outcome.words);
-        if (outcome.error) {
-            print_error(*outcome.error);
-            all = false;
-        }
-        all = all && !outcome.left;
-    }
-    if (outcomes.empty()) fmt::print("  {}\n", nothing);
-    return all;
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Error& error) {
+    return {{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
 }
 
-int change(const DoctorOptions& options, const Examination& seen, EthernetPorts& ports) {
-    if (::geteuid() != 0) {
-        print_error({"doctor.needs_root", options.apply ? "--apply" : "--revert", "settings of this computer are changed by root alone",
-                     "sudo taktwerk doctor ...; without --apply it only looks, and shows the commands"});
-        return exit_refused;
+void print_json(const Json& json) { fmt::print("{}\n", json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
+
+int refused(const DoctorOptions& options, const Error& error, int code) {
+    if (options.json) print_json({{"ok", false}, {"error", json_of(error)}});
+    else print_error(error);
+    return code;
+}
+
+bool all_done(const std::vector<ChangeOutcome>& outcomes) {
+    return std::none_of(outcomes.begin(), outcomes.end(), [](const auto& outcome) { return outcome.error || outcome.left; });
+}
+
+void say(const std::vector<ChangeOutcome>& outcomes, const char* nothing) {
+    for (const auto& outcome : outcomes) {
+        fmt::print("  {}\n", outcome.words);
+        if (outcome.error) print_error(*outcome.error);
     }
-    if (const auto machine = options.interface.empty() ? std::nullopt : machine_on(options.interface, {})) {
-        print_error({"doctor.machine_runs", options.interface,
-                     fmt::format("{} runs on it, and some of these settings take its link away for seconds", machine->name),
-                     "end that run first (taktwerk shutdown)"});
-        return exit_refused;
+    if (outcomes.empty()) fmt::print("  {}\n", nothing);
+}
+
+Json json_of(const std::vector<ChangeOutcome>& outcomes) {
+    auto list = Json::array();
+    for (const auto& outcome : outcomes) {
+        Json one{{"words", outcome.words}, {"left", outcome.left}};
+        if (outcome.error) one["error"] = json_of(*outcome.error);
+        list.push_back(std::move(one));
     }
+    return list;
+}
+
+/// Why nothing may be changed here; nothing: it may. `recorded`: what --revert would put back.
+std::optional<Error> why_not(const DoctorOptions& options, const std::vector<AppliedChange>& recorded) {
+    if (::geteuid() != 0)
+        return Error{"doctor.needs_root", options.apply ? "--apply" : "--revert", "settings of this computer are changed by root alone",
+                     "sudo taktwerk doctor ...; without --apply it only looks, and shows the commands"};
+    std::set<std::string> interfaces;
+    if (!options.interface.empty()) interfaces.insert(options.interface);
+    for (const auto& each : recorded)
+        if (options.revert && each.change.kind == HostChange::Kind::ethernet) interfaces.insert(each.change.target);
+    for (const auto& interface : interfaces)
+        if (const auto machine = machine_on(interface, {}))
+            return Error{"doctor.machine_runs", interface,
+                         fmt::format("{} runs on it, and some of these settings take its link away for seconds", machine->name),
+                         "end that run first (taktwerk shutdown)"};
+    return std::nullopt;
+}
+
+int revert(const DoctorOptions& options, EthernetPorts& ports) {
     Changes changes{"/", ports};
-    if (options.revert) {
-        const auto done = changes.revert();
-        if (!done) return print_error(done.error()), exit_bad_file;
+    const auto recorded = changes.recorded();
+    if (!recorded) return refused(options, recorded.error(), exit_bad_file);
+    if (const auto why = why_not(options, *recorded)) return refused(options, *why, exit_refused);
+    const auto done = changes.revert();
+    if (!done) return refused(options, done.error(), exit_bad_file);
+    if (options.json) {
+        print_json({{"ok", all_done(*done)}, {"taken_back", json_of(*done)}});
+    } else {
         fmt::print("Taken back:\n");
-        return say(*done, "nothing: no change of `doctor --apply` is recorded here") ? exit_ok : exit_warnings;
+        say(*done, "nothing: no change of `doctor --apply` is recorded here");
     }
-    std::vector<HostChange> wanted;
-    for (const auto& finding : seen.findings) wanted.insert(wanted.end(), finding.changes.begin(), finding.changes.end());
-    const auto done = changes.apply(wanted);
-    if (!done) return print_error(done.error()), exit_bad_file;
-    fmt::print("Changed (`taktwerk doctor --revert` takes it back):\n");
-    const bool all = say(*done, "nothing: what can be changed from here is as it should be");
+    return all_done(*done) ? exit_ok : exit_warnings;
+}
+
+/// `told`: of --json, what it says in the end.
+int apply(const DoctorOptions& options, const Examination& seen, EthernetPorts& ports, Json& told) {
+    if (const auto why = why_not(options, {})) return refused(options, *why, exit_refused);
+    Changes changes{"/", ports};
+    std::vector<ChangeOutcome> done;
+    for (const auto& finding : seen.findings) {
+        auto some = changes.apply_together(finding.changes);
+        if (!some) return refused(options, some.error(), exit_bad_file);
+        done.insert(done.end(), std::make_move_iterator(some->begin()), std::make_move_iterator(some->end()));
+    }
     std::vector<std::string> commands;
     for (const auto& finding : seen.findings)
         if (!finding.changes.empty() && !finding.then.empty()) commands.push_back(finding.then);
-    for (const auto& command : commands) fmt::print("  takes effect with: {}\n", command);
-    fmt::print("\n");
-    return all ? exit_ok : exit_bad_file;
+    told = Json{{"ok", all_done(done)}, {"changed", json_of(done)}, {"takes_effect_with", commands}};
+    if (!options.json) {
+        fmt::print("Changed (`taktwerk doctor --revert` takes it back):\n");
+        say(done, "nothing: what can be changed from here is as it should be");
+        for (const auto& command : commands) fmt::print("  takes effect with: {}\n", command);
+        fmt::print("\n");
+    } else if (!all_done(done)) {
+        print_json(told);
+    }
+    return all_done(done) ? exit_ok : exit_bad_file;
 }
 
 int run_doctor(const DoctorOptions& options) {
@@ -85,21 +137,22 @@ int run_doctor(const DoctorOptions& options) {
     wanted.computing = options.computing_s > 0 ? of_seconds(options.computing_s) : wanted.cycle / 10;
     wanted.cpu = options.cpu;
     if (wanted.cycle < std::chrono::microseconds{50} || wanted.cycle > std::chrono::seconds{1}) {
-        print_error({"usage.cycle", "--cycle", "a cycle of 50 us to 1 s is wanted", "leave it out for 1ms"});
-        return exit_usage;
+        return refused(options, {"usage.cycle", "--cycle", "a cycle of 50 us to 1 s is wanted", "leave it out for 1ms"}, exit_usage);
     }
     KernelEthernetPorts ports;
-    if (options.revert) return change(options, {}, ports);
+    ::umask(022);  // what is written is the computer's: others read it
+    if (options.revert) return revert(options, ports);
     auto seen = examine("/", ports, wanted, options.interface);
     if (options.cpu >= 0 && !HostFiles{}.exists(fmt::format("/sys/devices/system/cpu/cpu{}", options.cpu))) {
-        print_error({"realtime.cpus", fmt::format("CPU {}", options.cpu), "there is no such CPU", "See `lscpu`"});
-        return exit_usage;
+        return refused(options, {"realtime.cpus", fmt::format("CPU {}", options.cpu), "there is no such CPU", "See `lscpu`"}, exit_usage);
     }
+    Json changed;
     if (options.apply) {
         // root has every right: what is to be had is for those that a machine runs as.
         auto of_others = wanted;
         of_others.of_others = true;
-        if (const int code = change(options, examine("/", ports, of_others, options.interface), ports); code != exit_ok) return code;
+        if (const int code = apply(options, examine("/", ports, of_others, options.interface), ports, changed); code != exit_ok)
+            return code;
         seen = examine("/", ports, wanted, options.interface);
     }
     if (!options.no_measuring) {
@@ -107,7 +160,9 @@ int run_doctor(const DoctorOptions& options) {
         measure(seen, of_seconds(options.duration_s));
     }
     if (options.json) {
-        fmt::print("{}\n", report_json(seen).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+        auto report = report_json(seen);
+        if (options.apply) report.update(changed);
+        print_json(report);
     } else {
         fmt::print("{}", report_text(seen, colours_of_output(), terminal_size().value_or(TerminalSize{100, 24}).columns,
                                      options.why ? Sources::shown : Sources::hidden));

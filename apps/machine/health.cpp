@@ -27,6 +27,7 @@ void judge(Health& h, bool cycling, const std::string& progress) {
 }  // namespace
 
 Health health_of(const Json& hello, const Json& told) {
+    constexpr std::uint64_t none = 0;
     const bool cycles = told.is_object();
     const auto& state = cycles ? told : Json::object();
     Health h;
@@ -39,13 +40,13 @@ Health health_of(const Json& hello, const Json& told) {
     h.simulated = state.value("simulated", false);
     h.emergency_stop = state.value("emergency_stop", false);
     h.bus = part(state, "bus", Json::object()).value("phase", std::string{});
-    h.frames_lost = part(state, "bus", Json::object()).value("frames_lost", 0.0);
+    h.frames_lost = part(state, "bus", Json::object()).value("frames_lost", none);
     const auto statistics = part(state, "statistics", Json::object());
-    h.cycles = statistics.value("cycles", 0.0);
-    h.missed = statistics.value("missed_ticks", 0.0);
+    h.cycles = statistics.value("cycles", none);
+    h.missed = statistics.value("missed_ticks", none);
     h.lateness_max_us = statistics.value("lateness_max_ns", 0.0) / 1000;
     h.compute_max_us = statistics.value("compute_max_ns", 0.0) / 1000;
-    h.page_faults = statistics.value("page_faults", 0.0);
+    h.page_faults = statistics.value("page_faults", none);
     for (const auto& axis : part(state, "axes", Json::array())) {
         ++h.axes;
         h.powered += axis.value("powered", false) ? 1 : 0;
@@ -54,7 +55,7 @@ Health health_of(const Json& hello, const Json& told) {
     for (const auto& program : part(state, "programs", Json::array()))
         h.programs.emplace_back(program.value("name", std::string{}), program.value("state", std::string{}));
     for (const auto& task : part(state, "tasks", Json::array()))
-        h.tasks.push_back({task.value("name", std::string{}), task.value("releases", 0.0), task.value("overruns", 0.0),
+        h.tasks.push_back({task.value("name", std::string{}), task.value("releases", none), task.value("overruns", none),
                            task.value("run_ns", 0.0) / 1000, task.value("run_max_ns", 0.0) / 1000});
     for (const auto& alarm : part(state, "alarms", Json::array()))
         if (auto reaction = alarm.value("reaction", std::string{}); stops_something(reaction))
@@ -71,11 +72,11 @@ std::string health_text(const Health& h) {
         text += fmt::format("  {}, {} mode; {} of {} axes powered, {} homed\n", h.phase, h.mode, h.powered, h.axes, h.homed);
     for (const auto& [name, state] : h.programs) text += fmt::format("  program {}: {}\n", name, state);
     for (const auto& task : h.tasks)
-        text += fmt::format("  task {}: {:.0f} runs, {:.0f} overruns, {:.0f} us, at most {:.0f} us\n", task.name, task.runs, task.overruns,
+        text += fmt::format("  task {}: {} runs, {} overruns, {:.0f} us, at most {:.0f} us\n", task.name, task.runs, task.overruns,
                             task.run_us, task.run_max_us);
     if (h.cycles > 0)
         text += fmt::format(
-            "  {:.0f} cycles, {:.0f} ticks missed, wake-up at most {:.0f} us late, computing at most {:.0f} us; {:.0f} frames lost; {:.0f} "
+            "  {} cycles, {} ticks missed, wake-up at most {:.0f} us late, computing at most {:.0f} us; {} frames lost; {} "
             "page faults of the cycle\n",
             h.cycles, h.missed, h.lateness_max_us, h.compute_max_us, h.frames_lost, h.page_faults);
     return text + fmt::format("  taktwerk {}, process {}, up {:.0f} s\n", h.version, h.process, h.uptime_s);

@@ -1,6 +1,7 @@
 #pragma once
 // Is this machine well? For a person, a script, a monitoring of the plant. Taken from what the socket says, so from outside the runtime.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ struct Health {
     long long process = 0;
     double uptime_s = 0;
     std::size_t axes = 0, powered = 0, homed = 0;
-    double cycles = 0, missed = 0, lateness_max_us = 0, compute_max_us = 0, frames_lost = 0, page_faults = 0;
+    std::uint64_t cycles = 0, missed = 0, frames_lost = 0, page_faults = 0;
+    double lateness_max_us = 0, compute_max_us = 0;
     struct Listed {
         std::string source, name, text, reaction;
         bool standing = false;
@@ -23,7 +25,8 @@ struct Health {
     std::vector<std::pair<std::string, std::string>> programs;  ///< name, state
     struct Task {
         std::string name;  ///< with its program's
-        double runs = 0, overruns = 0, run_us = 0, run_max_us = 0;
+        std::uint64_t runs = 0, overruns = 0;
+        double run_us = 0, run_max_us = 0;
     };
     std::vector<Task> tasks;
     std::vector<std::string> unwell;  ///< why it is not; empty: it is well

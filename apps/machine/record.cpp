@@ -31,11 +31,14 @@ std::string run_text(const Json& run) {
     return text;
 }
 
+/// A runtime of an older version says only that something is still to come.
+bool is_awaited(const Json& run) { return run.value("asked_waits", run.at("waits").get<bool>()); }
+
 int keep_run(const RemoteOptions& options, hmi::Client& client) {
     auto answer = client.request({{"cmd", "replay_keep"}});
     if (!answer) return report(options, answer.error());
-    // Up to now: its last second comes with the next block of the run.
-    for (int i = 0; i < keep_looks && answer->at("replay").at("waits").get<bool>(); ++i) {
+    // Up to now: its last second comes with the next block of the run. What is still to come behind an alarm goes into the same file later.
+    for (int i = 0; i < keep_looks && is_awaited(answer->at("replay")); ++i) {
         std::this_thread::sleep_for(keep_look_again);
         answer = client.request({{"cmd", "replay_state"}});
         if (!answer) return report(options, answer.error());
@@ -43,7 +46,7 @@ int keep_run(const RemoteOptions& options, hmi::Client& client) {
     const auto& run = answer->at("replay");
     if (const auto ended = run.at("ended").get<std::string>(); !ended.empty())
         return report(options, Error{"recording.ended", "", "the run could not be kept: " + ended, "Look at that disk."});
-    if (run.at("waits").get<bool>())
+    if (is_awaited(run))
         return report(options, Error{"recording.not_yet", run.at("file").get<std::string>(), "it is still being written",
                                      "`taktwerk record status` says when it is there."});
     if (options.json) fmt::print("{}\n", run.dump(-1, ' ', false, Json::error_handler_t::replace));

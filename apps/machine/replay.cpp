@@ -57,12 +57,45 @@ std::string how_it_ends(RecordingEnd end) {
     return {};
 }
 
-int show(RecordingReader& recording) {
+const char* word_of_end(RecordingEnd end) {
+    switch (end) {
+        case RecordingEnd::whole: return "whole";
+        case RecordingEnd::kept: return "kept";
+        case RecordingEnd::limit: return "limit";
+        case RecordingEnd::torn: return "torn";
+        case RecordingEnd::no_part: return "no_part";
+    }
+    return "";
+}
+
+struct ChannelCount {
+    std::uint64_t records = 0, bytes = 0;
+};
+using ChannelCounts = std::map<std::string, ChannelCount>;
+
+void show_json(const RecordingReader& recording, const ChannelCounts& counts) {
+    std::string facts, channels;
+    for (const auto& [name, value] : recording.info().facts)
+        facts += fmt::format("{}{{\"name\":{},\"value\":{}}}", facts.empty() ? "" : ",", json_text(name), json_text(value));
+    for (const auto& [name, count] : counts)
+        channels += fmt::format("{}{{\"name\":{},\"records\":{},\"bytes\":{}}}", channels.empty() ? "" : ",", json_text(name),
+                                count.records, count.bytes);
+    fmt::print("{{\"records\":{},\"bytes\":{},\"files\":{},\"end\":\"{}\",\"lost\":{},\"facts\":[{}],\"channels\":[{}]}}\n",
+               recording.records(), recording.bytes(), recording.parts(), word_of_end(recording.end()), recording.lost(), facts, channels);
+}
+
+void show_text(const RecordingReader& recording, const ChannelCounts& counts) {
     const auto end = how_it_ends(recording.end());
     fmt::print("{}, {}{}{}\n\n", count_text(recording.records(), "record"), count_text(recording.bytes(), "byte"),
                recording.parts() > 1 ? fmt::format(" in {} files", recording.parts()) : "", end.empty() ? "" : "; it " + end);
     for (const auto& [name, value] : recording.info().facts) fmt::print("  {:<28} {}\n", name, value);
-    std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> counts;
+    fmt::print("\n");
+    for (const auto& [name, count] : counts)
+        fmt::print("  {:<28} {:>10} records {:>12} bytes before they are compressed\n", name, count.records, count.bytes);
+}
+
+int show(RecordingReader& recording, bool json) {
+    ChannelCounts counts;
     for (;;) {
         const auto record = recording.next();
         if (!record) {
@@ -70,13 +103,12 @@ int show(RecordingReader& recording) {
             return exit_bad_file;
         }
         if (!record->has_value()) break;
-        auto& [records, bytes] = counts[recording.info().channels[(*record)->channel]];
-        ++records;
-        bytes += (*record)->bytes.size();
+        auto& count = counts[recording.info().channels[(*record)->channel]];
+        ++count.records;
+        count.bytes += (*record)->bytes.size();
     }
-    fmt::print("\n");
-    for (const auto& [name, count] : counts)
-        fmt::print("  {:<28} {:>10} records {:>12} bytes before they are compressed\n", name, count.first, count.second);
+    if (json) show_json(recording, counts);
+    else show_text(recording, counts);
     return exit_ok;
 }
 
@@ -232,7 +264,7 @@ int replay(const ReplayOptions& options) {
     auto loaded = RecordingReader::open(options.recording);
     if (!loaded) return fail({loaded.error()}, {});
     auto& recording = **loaded;
-    if (options.show) return show(recording);
+    if (options.show) return show(recording, options.json);
     if (const auto wrong = wrong_until(options.until)) {
         print_error(*wrong);
         return exit_usage;
@@ -317,7 +349,7 @@ void add_replay(CLI::App& app, Action& action) {
     sub->add_option("--program", options->programs,
                     "with this program in the place of the recorded one: FILE.so, or NAME=FILE.so. What differs is told and is no failure");
     sub->add_flag("--show", options->show, "say what is in the recording, and replay nothing");
-    sub->add_flag("--json", options->json, "events and result as JSON, one object a line");
+    sub->add_flag("--json", options->json, "events and result as JSON, one object a line; with --show one object");
     sub->add_flag("--quiet", options->quiet, "say only the result");
     sub->callback([&action, options] { action = [options] { return replay(*options); }; });
 }

@@ -14,11 +14,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Scripts read `well`, whatever else there is to read.
+int not_there(const RemoteOptions& options, const Error& error) {
+    if (!options.json) return report(options, error);
+    const Json told{{"ok", false},
+                    {"well", false},
+                    {"unwell", {error.what}},
+                    {"error", {{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}}}};
+    fmt::print("{}\n", told.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return exit_code_of(error);
+}
+
 int show(const RemoteOptions& options, hmi::Client& client) {
     const auto hello = client.request({{"cmd", "hello"}});
-    if (!hello) return report(options, hello.error());
+    if (!hello) return not_there(options, hello.error());
     const auto state = state_of(client);
-    if (!state && state.error().code != "state.not_yet") return report(options, state.error());
+    if (!state && state.error().code != "state.not_yet") return not_there(options, state.error());
     const auto health = health_of(hello->value("hello", Json::object()), state ? *state : Json{});
     if (options.json) fmt::print("{}\n", health_json(health).dump(-1, ' ', false, Json::error_handler_t::replace));
     else fmt::print("{}", health_text(health));
@@ -34,7 +45,12 @@ void add_status(CLI::App& app, Action& action) {
     auto options = std::make_shared<RemoteOptions>();
     add_remote_options(*sub, *options);
     sub->callback([&action, options] {
-        action = [options] { return with_machine(*options, [&](hmi::Client& client) { return show(*options, client); }); };
+        action = [options] {
+            auto client = hmi::Client::connect(options->machine);
+            if (!client) return not_there(*options, client.error());
+            const auto code = understood(client->path(), [&] { return show(*options, *client); });
+            return code ? *code : not_there(*options, code.error());
+        };
     });
 }
 

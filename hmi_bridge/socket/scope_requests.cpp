@@ -172,6 +172,7 @@ Result<void> ScopeRequests::handle_replay(ConnectionId connection, const std::st
                                 {"disk", state.disk},
                                 {"file", state.file},
                                 {"waits", state.waits},
+                                {"asked_waits", state.asked_waits},
                                 {"ended", state.ended ? state.ended->text() : std::string{}}};
     say(connection, id, "replay", said.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     return {};

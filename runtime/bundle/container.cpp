@@ -64,6 +64,16 @@ Header header_of(std::string_view path, std::uint64_t size, std::int64_t stamp) 
     return header;
 }
 
+}  // namespace
+
+std::string ustar_header(std::string_view path, std::uint64_t size, std::int64_t stamp) {
+    if (!parting(path)) path = path.substr(0, name_field.size);
+    const auto header = header_of(path, size, std::max<std::int64_t>(0, stamp));
+    return {header.data(), header.size()};
+}
+
+namespace {
+
 std::string_view text_in(const Header& header, Field field) {
     const std::string_view all(header.data() + field.at, field.size);
     return all.substr(0, std::min(all.find('\0'), all.size()));

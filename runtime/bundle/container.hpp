@@ -50,6 +50,10 @@ inline constexpr std::size_t longest_packed_path = 200;                         
 /// bundle.too_large, bundle.unreadable.
 [[nodiscard]] Result<Container> read_container(const ByteSource& source, const std::string& subject);
 
+/// The header of a regular file, 512 bytes: every archive that is made here has this one. `path`: relative, up to 255 bytes with its last part up to 100; what
+/// is longer is cut at its end. `stamp`: seconds since 1970.
+[[nodiscard]] std::string ustar_header(std::string_view path, std::uint64_t size, std::int64_t stamp);
+
 /// Puts one together, in memory.
 class ContainerText {
 public:

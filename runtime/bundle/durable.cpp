@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 
+#include "core/replaced_file.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -129,16 +131,8 @@ Result<void> write_new_file(const fs::path& path, std::string_view text) {
 }
 
 Result<void> replace_file(const fs::path& path, std::string_view text) {
-    const auto aside = beside(path);
-    ::unlink(aside.c_str());
-    if (auto ok = write_new_file(aside, text); !ok) {
-        ::unlink(aside.c_str());
-        auto error = ok.error();
-        error.subject = path.string();
-        return error;
-    }
-    if (::rename(aside.c_str(), path.c_str()) != 0) return not_written(path, errno);
-    return sync_folder(path.parent_path());
+    const int failed = taktwerk::replace_file(path, text);
+    return failed == 0 ? Result<void>{} : not_written(path, failed);
 }
 
 Result<void> append_line(const fs::path& path, std::string_view line) {

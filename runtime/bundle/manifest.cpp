@@ -150,13 +150,22 @@ Result<Manifest> manifest_of(std::string_view text, const std::string& subject) 
     if (text.size() > longest_manifest) return wrong(fmt::format("it has more than {} bytes", longest_manifest));
     constexpr int deepest = 4;
     bool too_deep = false;
+    // A key that stands twice means one thing to one reader and another thing to the next one; a signature must not stand over both.
+    std::array<std::set<std::string>, deepest + 2> keys_at;
+    std::string twice;
     const auto json = Json::parse(
         text,
-        [&](int depth, Json::parse_event_t, Json&) {
+        [&](int depth, Json::parse_event_t event, Json& parsed) {
             too_deep = too_deep || depth > deepest;
-            return !too_deep;
+            if (too_deep) return false;
+            const auto level = static_cast<std::size_t>(depth);
+            if (event == Json::parse_event_t::object_start) keys_at[level + 1].clear();
+            if (event == Json::parse_event_t::key && !keys_at[level].insert(parsed.get<std::string>()).second)
+                twice = parsed.get<std::string>();
+            return true;
         },
         false);
+    if (!twice.empty() && !too_deep) return wrong(fmt::format("'{}' stands there twice", twice.substr(0, 80)));
     if (too_deep || json.is_discarded() || !json.is_object()) return wrong("it is no JSON of this kind");
     std::string problem;
     JsonFields keys(json, problem);

@@ -95,6 +95,7 @@ void AlarmLog::end_cycle(Instant now) noexcept {
         auto& alarm = alarms_[i];
         const bool over = alarm.standing && !rules_[i].raised;
         alarm.standing = rules_[i].raised;
+        if (alarm.standing) rules_[i].cleared = false;  // its cause came back at once
         if (over && rules_[i].reset != ResetRule::self_clearing) alarm.acknowledged = false;
         if (alarm.standing || (rules_[i].reset != ResetRule::self_clearing && !rules_[i].cleared)) {
             ++i;
@@ -129,6 +130,13 @@ void AlarmLog::reset() noexcept {
     acknowledge();
     for (std::size_t i = 0; i < count_; ++i)
         rules_[i].cleared = rules_[i].cleared || (!alarms_[i].standing && rules_[i].reset == ResetRule::reset);
+}
+
+void AlarmLog::reset_with_cause(AlarmId id, AlarmSource source, std::uint16_t index) noexcept {
+    for (std::size_t i = 0; i < count_; ++i) {
+        const auto& fact = alarms_[i].fact;
+        if (fact.id == id && fact.source == source && fact.index == index) rules_[i].cleared = true;
+    }
 }
 
 const ActiveAlarm* AlarmLog::find(AlarmId id) const noexcept {

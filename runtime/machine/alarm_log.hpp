@@ -36,6 +36,8 @@ public:
     [[nodiscard]] bool lists(AlarmId id) const noexcept;
     /// Acknowledges; and what needs a reset and does not hold any more goes. `restart` stays.
     void reset() noexcept;
+    /// A reset has just taken its cause away: it goes with it, at the end of this cycle. Where the cause is there all the same it stays.
+    void reset_with_cause(AlarmId id, AlarmSource source, std::uint16_t index) noexcept;
 
     /// The strongest reaction of what is listed: an alarm that waits for somebody reacts on.
     [[nodiscard]] Reaction strongest() const noexcept;

@@ -170,9 +170,7 @@ Verdict OperatorDesk::execute_program(const OperatorCommand& command) noexcept {
         case OperatorAction::program_stop:
             if (program.running() || program.start_pending()) programs_.stop(command.index, ProgramState::stopped);
             return {};
-        default:
-            if (program.state == ProgramState::fault) program.state = ProgramState::stopped;
-            return {};
+        default: programs_.reset(command.index); return {};
     }
 }
 

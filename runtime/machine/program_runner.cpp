@@ -215,9 +215,29 @@ void ProgramRunner::stop_all() noexcept {
 }
 
 void ProgramRunner::reset() noexcept {
-    for (auto& slow : slow_tasks_) slow.watch.forgive();
-    for (auto& program : programs_)
-        if (program.state == ProgramState::fault) program.state = ProgramState::stopped;
+    for (auto& slow : slow_tasks_) {
+        slow.watch.forgive();
+        body_.log.reset_with_cause(id(MachineAlarm::task_overrun), AlarmSource::task, static_cast<std::uint16_t>(slow.place));
+    }
+    for (std::size_t p = 0; p < programs_.size(); ++p) reset(p);
+}
+
+void ProgramRunner::reset(std::size_t p) noexcept {
+    if (programs_[p].state != ProgramState::fault) return;
+    programs_[p].state = ProgramState::stopped;
+    body_.log.reset_with_cause(id(MachineAlarm::program_fault), AlarmSource::program, static_cast<std::uint16_t>(p));
+    for (const auto& slow : slow_tasks_) {
+        if (slow.task->program() != p || !slow.finished) continue;
+        for (const auto alarm : {MachineAlarm::task_late, MachineAlarm::task_watchdog})
+            body_.log.reset_with_cause(id(alarm), AlarmSource::task, static_cast<std::uint16_t>(slow.place));
+    }
+}
+
+void ProgramRunner::stop_axes_of(std::size_t program, AlarmId reason) noexcept {
+    for (std::size_t i = 0; i < body_.axes.size(); ++i) {
+        const bool its = claims_[i].power == program || claims_[i].motion == program;
+        if (its && body_.axes[i].view().owner == axes::Owner::program) body_.axes[i].stop_for_error(reason, false);
+    }
 }
 
 bool ProgramRunner::any_runs_or_starts() const noexcept {

@@ -45,8 +45,12 @@ public:
     void stop(std::size_t program, ProgramState state) noexcept;
     /// Those that run or are about to.
     void stop_all() noexcept;
-    /// What stopped by a fault may start again; overruns count anew.
+    /// What stopped by a fault may start again, and overruns count anew: the alarms of both go, but for that of a task that is still at work.
     void reset() noexcept;
+    /// The same of one program, whose tasks' overruns go on counting.
+    void reset(std::size_t program) noexcept;
+    /// An alarm of the program's own that stops its axes: those that it powers or moves.
+    void stop_axes_of(std::size_t program, AlarmId reason) noexcept;
     [[nodiscard]] bool any_runs_or_starts() const noexcept;
     /// As OperatorAction::set_value.
     Verdict write_value(const OperatorCommand& command) noexcept;

@@ -105,9 +105,16 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
 void ProgramRunner::judge(SlowPlace& slow) noexcept {
     const auto p = slow.task->program();
     auto& program = programs_[p];
-    if (!program.running()) return;
     const auto verdict = slow.watch.verdict(body_.cycles);
     if (verdict == TaskVerdict::in_time) return;
+    if (!program.running()) {
+        // A person has stopped it: who asks why it does not start again is to find the task that has not come back.
+        if (program.state != ProgramState::stopped || slow.finished || verdict != TaskVerdict::watchdog || program.stopped_by.task())
+            return;
+        program.stopped_by.set(slow.place, verdict);
+        slow.taken = milliseconds(slow.watch.cycles_taken(body_.cycles));
+        return;
+    }
     program.stopped_by.set(slow.place, verdict);
     slow.taken = verdict == TaskVerdict::late ? slow.watch.overruns() : milliseconds(slow.watch.cycles_taken(body_.cycles));
     objects_.close(p);

@@ -161,6 +161,12 @@ void Supervisor::stop_axes_of_slaves() noexcept {
     }
 }
 
+void Supervisor::stop_axes_of_programs() noexcept {
+    for (const auto& alarm : body_.log.alarms())
+        if (alarm.reaction == Reaction::stop_axis && alarm.fact.source == AlarmSource::program && alarm_range::programs.has(alarm.fact.id))
+            programs_.stop_axes_of(alarm.fact.index, alarm.fact.id);
+}
+
 void Supervisor::react() noexcept {
     if (body_.emergency) return;  // the axes' own business: a level that each of them holds
     const ActiveAlarm* cause = nullptr;
@@ -170,6 +176,7 @@ void Supervisor::react() noexcept {
         if (alarm.reaction >= Reaction::stop_machine && (!cause || alarm.reaction > cause->reaction)) cause = &alarm;
     }
     stop_axes_of_slaves();
+    stop_axes_of_programs();
     if (!cause) return;
     for (auto& axis : body_.axes) axis.stop_for_error(cause->fact.id, cause->reaction == Reaction::power_off);
 }

@@ -50,6 +50,8 @@ private:
     void react() noexcept;
     /// What the bus says of one slave stops the axes on it, and no others.
     void stop_axes_of_slaves() noexcept;
+    /// What a program says of itself stops the axes that it powers or moves.
+    void stop_axes_of_programs() noexcept;
 
     MachineBody& body_;
     MachineDrives& drives_;

@@ -54,8 +54,11 @@ std::vector<StartFile> start_files(const MachineConfig& config) {
     std::vector<StartFile> out;
     if (config.retain.empty()) return out;
     const std::filesystem::path folder{config.retain.directory};
-    for (const char* name : {"retain.0", "retain.1", "positions.0", "positions.1"})
-        if (auto text = SlotFiles::read(folder / name); text && text->has_value()) out.push_back({name, std::move(**text)});
+    for (const char* name : {"retain.0", "retain.1", "positions.0", "positions.1"}) {
+        auto text = SlotFiles::read(folder / name);
+        if (!text) out.push_back({std::string(name).append(unreadable_file), {}});  // that it is there is an alarm
+        else if (text->has_value()) out.push_back({name, std::move(**text)});
+    }
     return out;
 }
 

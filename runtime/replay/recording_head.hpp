@@ -28,6 +28,9 @@ inline constexpr std::string_view file_prefix = "file:", program_prefix = "progr
 /// A file of what was kept over a time without power, as the machine found it: u16 length of its name, name, bytes. Before the first tick.
 inline constexpr RecordChannel start_file_channel = 20;
 
+/// Behind the name of one that was there and could not be read: an alarm depends on it. It has no bytes.
+inline constexpr std::string_view unreadable_file = ".unreadable";
+
 struct StartFile {
     std::string name;
     std::string bytes;

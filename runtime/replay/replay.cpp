@@ -77,6 +77,10 @@ struct Folder {
         return folder;
     }
     [[nodiscard]] bool write(const StartFileRecord& file) const {
+        if (file.name.ends_with(unreadable_file)) {  // a folder is no file that anybody could read
+            std::error_code failed;
+            return fs::create_directory(path / file.name.substr(0, file.name.size() - unreadable_file.size()), failed);
+        }
         std::ofstream out{path / file.name, std::ios::binary};
         for (const std::byte b : file.bytes) out.put(static_cast<char>(b));
         return out.flush().good();

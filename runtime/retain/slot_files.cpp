@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "core/replaced_file.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -27,15 +29,6 @@ public:
     }
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
-    [[nodiscard]] bool write(std::string_view text) const {
-        while (fd_ >= 0 && !text.empty()) {
-            const auto done = ::write(fd_, text.data(), text.size());
-            if (done < 0 && errno == EINTR) continue;
-            if (done <= 0) return false;
-            text.remove_prefix(static_cast<std::size_t>(done));
-        }
-        return fd_ >= 0;
-    }
     [[nodiscard]] bool sync() const { return fd_ >= 0 && ::fsync(fd_) == 0; }
 
 private:
@@ -114,22 +107,22 @@ Result<std::optional<std::string>> SlotFiles::read(const fs::path& path) {
     return std::optional(std::move(text));
 }
 
-void SlotFiles::set_aside(const fs::path& file) noexcept { (void)::rename(file.c_str(), (file.string() + ".unread").c_str()); }
+void SlotFiles::set_aside(const fs::path& file) noexcept {
+    // What was set aside before is the older part of the story: it stays, and the new one is numbered.
+    constexpr int most = 100;
+    for (int number = 1; number <= most; ++number) {
+        const auto aside = number == 1 ? file.string() + ".unread" : fmt::format("{}.unread.{}", file.string(), number);
+        if (::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, aside.c_str(), RENAME_NOREPLACE) == 0 || errno != EEXIST) return;
+    }
+}
 
 Result<void> SlotFiles::write(unsigned slot, std::string_view text) {
     std::error_code failed;
     fs::create_directories(directory_, failed);
     if (failed) return cannot_write(directory_, failed.message());
     const auto path = place(slot);
-    const auto beside = fs::path(path.string() + ".new");
-    {
-        const Descriptor file(beside, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
-        if (!file.write(text) || !file.sync()) return cannot_write(beside, std::strerror(errno));
-    }
-    fs::rename(beside, path, failed);
-    if (failed) return cannot_write(path, failed.message());
-    if (!Descriptor(directory_, O_RDONLY | O_DIRECTORY).sync()) return cannot_write(directory_, std::strerror(errno));
-    return {};
+    const int why = replace_file(path, text);
+    return why == 0 ? Result<void>{} : cannot_write(path, std::strerror(why));
 }
 
 // A folder that takes no new file may let go of an old one, and one that does neither may hold files that can be emptied.

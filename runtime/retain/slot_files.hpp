@@ -30,7 +30,7 @@ public:
     [[nodiscard]] std::filesystem::path place(unsigned slot) const;
     /// Nothing where there is no such file. Errors: retain.unreadable, with the reason of the system: something is there, whatever it says.
     [[nodiscard]] static Result<std::optional<std::string>> read(const std::filesystem::path& file);
-    /// Keeps a file that cannot be read, as NAME.unread, so that the next write() does not replace it. Nothing where it cannot be moved either.
+    /// Keeps a file that cannot be read, as NAME.unread (NAME.unread.2, ... where that is taken), so that the next write() does not replace it. Nothing where it cannot be moved either.
     static void set_aside(const std::filesystem::path& file) noexcept;
     /// Errors: retain.cannot_write, with the reason of the system; the other slot is as it was, and this one is the old or the new one.
     [[nodiscard]] Result<void> write(unsigned slot, std::string_view text);

@@ -15,6 +15,8 @@ namespace {
 
 /// Between two looks whether the run has ended: somebody may be waiting for the thread.
 constexpr Duration longest_sleep = std::chrono::milliseconds{50};
+/// A program at rest may start at any time, and its task's first run begins within an eighth of a period.
+constexpr Duration longest_rest = std::chrono::milliseconds{10};
 constexpr std::size_t touched_stack = std::size_t{128} << 10;
 
 }  // namespace
@@ -28,7 +30,10 @@ RealtimeReport TaskThreads::start(const std::atomic<bool>& stop, int cycle_prior
         place.task = i;
         place.priority = priorities[i];
         const auto watchdog = TaskWatch::watchdog_of(tasks[i], machine_.config());
-        if (watchdog > Duration{}) place.at_priority = std::min(longest_at_priority, watchdog * tasks[i].watchdog_sensitivity);
+        // Multiplied by what it is compared with, for a watchdog of hours times a sensitivity of thousands is more than a Duration holds.
+        const auto sensitivity = std::max<Duration::rep>(1, tasks[i].watchdog_sensitivity);
+        if (watchdog > Duration{} && watchdog < longest_at_priority)
+            place.at_priority = std::min(longest_at_priority, watchdog * sensitivity);
     }
     for (auto& place : places_) place.thread = std::thread{[this, &place, &stop] { run(place, stop); }};
 
@@ -66,8 +71,16 @@ void TaskThreads::run(Place& place, const std::atomic<bool>& stop) {
         place.began.store(Instant{}, std::memory_order_release);
         if (place.taken.exchange(false, std::memory_order_acq_rel)) (void)set_fifo_priority(place.priority);
         if (ran) wait_for_release(place, stop);
-        else clock_.sleep_until(clock_.now() + machine_.config().cycle / 4);
+        else clock_.sleep_until(clock_.now() + until_next_look(place, clock_.now()));
     }
+}
+
+// Four looks in each cycle while a release is due; where none has come for two periods its program rests, or the cycle stands still.
+Duration TaskThreads::until_next_look(const Place& place, Instant now) const {
+    const Duration often = machine_.config().cycle / 4;
+    const Duration period = machine_.config().cycle * static_cast<Duration::rep>(machine_.slow_task(place.task).divisor);
+    const bool rests = now - machine_.slow_task_released(place.task) > 2 * period;
+    return rests ? std::max(often, std::min(period / 8, longest_rest)) : often;
 }
 
 // The cycle never wakes anybody (that would be a system call): a task looks for its release itself, often enough. It need not look before a whole

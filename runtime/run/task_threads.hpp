@@ -43,6 +43,7 @@ private:
         std::atomic<Instant> began{};    ///< of the run at work; Instant{}: none
     };
     void run(Place& place, const std::atomic<bool>& stop);
+    [[nodiscard]] Duration until_next_look(const Place& place, Instant now) const;
     void wait_for_release(const Place& place, const std::atomic<bool>& stop);
 
     Machine& machine_;

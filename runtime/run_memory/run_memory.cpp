@@ -67,8 +67,7 @@ void RunMemory::look(const Snapshot& snapshot, const NameOf& name_of) {
         if (reaction < Reaction::stop_axis || since >= until) return false;
         const auto name = name_of(fact);
         const std::scoped_lock lock{mutex_};
-        if (wishes_.size() >= most_wishes) wishes_.pop_back();
-        wishes_.push_back({name, since + place_.after});
+        wish({name, since, since + place_.after});
         if (path_.empty()) path_ = path_for(name, since);
         return true;
     });
@@ -76,27 +75,36 @@ void RunMemory::look(const Snapshot& snapshot, const NameOf& name_of) {
 
 Result<std::string> RunMemory::keep(Instant now) {
     const std::scoped_lock lock{mutex_};
-    if (ended_)
-        return Error{"recording.ended", place_.machine, fmt::format("this run is taken no further: {}", ended_->what), ended_->remedy};
-    if (wishes_.size() >= most_wishes) wishes_.pop_back();
-    wishes_.push_back({"", now});
-    if (path_.empty()) path_ = path_for("asked", now);
-    return path_;
+    const bool part = sound_part();
+    if (!ended_ || part) {
+        wish({"", now, now});
+        if (path_.empty()) path_ = path_for("asked", now);
+    }
+    if (!ended_) return path_;
+    return Error{"recording.ended", place_.machine, fmt::format("this run is taken no further: {}", ended_->what),
+                 part ? fmt::format("What came before can be replayed: {}. {}", path_, ended_->remedy) : ended_->remedy};
+}
+
+void RunMemory::wish(Wish more) {
+    const auto behind = std::ranges::upper_bound(wishes_, more.until, {}, &Wish::until);
+    wishes_.insert(behind, std::move(more));
+    // The last one has what the one before it wants.
+    if (wishes_.size() > most_wishes) wishes_.erase(wishes_.end() - 2);
 }
 
 RunMemory::State RunMemory::state() const {
     const std::scoped_lock lock{mutex_};
     const bool waits = !wishes_.empty() || writing_;
-    return {std::max(until_, place_.start) - place_.start, blocks_.bytes(), on_disk_, kept_ || waits ? path_ : "", waits, ended_};
+    const bool asked = writing_ || std::ranges::any_of(wishes_, [](const Wish& wish) { return wish.why.empty(); });
+    return {std::max(until_, place_.start) - place_.start, blocks_.bytes(), on_disk_, kept_ || waits ? path_ : "", waits, asked, ended_};
 }
 
 // --- a thread that may wait ------------------------------------------------------------------------------------------------------------
 
 void RunMemory::take(const PackedBlock& block, Instant until, std::uint64_t lost) {
     const std::scoped_lock lock{mutex_};
-    lost_ = lost;
     if (lost > 0 && !ended_) {
-        blocks_.clear();
+        // Blocks that were taken when nothing was lost are whole; this one may have a gap.
         ended_ = Error{"recording.lost", place_.machine,
                        fmt::format("{} records of the run did not get here: from there on nothing is certain", lost),
                        "This computer has no time for it: look at its load, or write `recording: {replay: false}`"};
@@ -108,6 +116,8 @@ void RunMemory::take(const PackedBlock& block, Instant until, std::uint64_t lost
 
 Error RunMemory::end(Error why) {
     const std::scoped_lock lock{mutex_};
+    // By the name that it has by now.
+    if (kept_ && why.subject.ends_with(unfinished)) why.subject.resize(why.subject.size() - unfinished.size());
     blocks_.clear();
     ended_ = why;
     return why;
@@ -138,7 +148,7 @@ Result<void> RunMemory::write_blocks(const std::string& path, bool wished) {
                      fmt::format("the run is longer than the {} bytes that its replay may have on the disk", room_.disk),
                      std::string(wished ? "What came before can be replayed. " : "Nothing of this run is kept. ") +
                          "For longer runs: `recording: {replay_disk: ...}`; each start begins anew"};
-            (void)file_->finish(RecordingEnd::limit, lost_).ok();
+            (void)file_->finish(RecordingEnd::limit, 0).ok();
         }
         return error;
     }
@@ -186,7 +196,7 @@ Result<RunMemory::Kept> RunMemory::write(const Wish& wish) {
         if (done.error().code == "recording.limit") (void)give_name(path).ok();
         return end(done.error());
     }
-    if (auto done = file_->finish(RecordingEnd::kept, lost_); !done) return end(done.error());
+    if (auto done = file_->finish(RecordingEnd::kept, 0); !done) return end(done.error());
     if (auto done = give_name(path); !done) return end(done.error());
     keep_bounds();
     return Kept{path, wish.why, std::max(until_, place_.start) - place_.start, file_->bytes()};
@@ -208,9 +218,7 @@ Result<RunMemory::Kept> RunMemory::work() {
             // One file has them all.
             while (!wishes_.empty() && !ended_ && wishes_.front().until <= until_) wishes_.pop_front();
         }
-        if (due && ended_)
-            return Error{"recording.ended", due->why.empty() ? place_.machine : due->why,
-                         fmt::format("what led to it cannot be replayed: {}", ended_->what), ended_->remedy};
+        if (due && ended_ && !sound_part()) return too_late(*due);
         writing_ = due.has_value();
         full = blocks_.bytes() > room_.memory;
         if (full && path_.empty()) path_ = path_for("run", place_.start);
@@ -221,11 +229,12 @@ Result<RunMemory::Kept> RunMemory::work() {
         said_ = said_ || !kept;
         const std::scoped_lock lock{mutex_};
         writing_ = false;
+        if (kept && ended_ && due->at > until_) return too_late(*due);
         return kept;
     }
-    if (!full) return Kept{};
+    if (!full || ended_) return Kept{};
     auto done = write_blocks(path, kept_);
-    if (done && kept_) done = file_->finish(RecordingEnd::kept, lost_);
+    if (done && kept_) done = file_->finish(RecordingEnd::kept, 0);
     if (!done) {
         said_ = true;
         if (!kept_) discard();
@@ -233,6 +242,12 @@ Result<RunMemory::Kept> RunMemory::work() {
     }
     if (kept_) keep_bounds();  // what nobody asked for takes no room of what somebody did
     return Kept{};
+}
+
+Error RunMemory::too_late(const Wish& wish) const {
+    return {"recording.ended", wish.why.empty() ? place_.machine : wish.why,
+            fmt::format("what led to it cannot be replayed: {}", ended_->what),
+            kept_ ? fmt::format("What came before can be: {}. {}", path_, ended_->remedy) : ended_->remedy};
 }
 
 void RunMemory::discard() {

@@ -48,13 +48,15 @@ public:
 
     // --- service side: nothing in it waits -----------------------------------------------------------------------------------------
     void look(const Snapshot& snapshot, const NameOf& name_of);
-    /// The run up to now, however it goes on; gives the path that it will have. Errors: recording.ended, where the run is longer than its room.
+    /// The run up to now, however it goes on; gives the path that it will have. Errors: recording.ended, where it is taken no further: what came before
+    /// lost records is kept all the same.
     [[nodiscard]] Result<std::string> keep(Instant now);
     struct State {
         Duration covered{};  ///< from the run's start
         std::uint64_t memory = 0, disk = 0;
         std::string file;            ///< where the run is kept, or will be once `waits` is over; empty: nowhere
         bool waits = false;          ///< its last seconds are still to come
+        bool asked_waits = false;    ///< what somebody has asked for is not there yet
         std::optional<Error> ended;  ///< nothing more is taken, and why
     };
     [[nodiscard]] State state() const;
@@ -69,7 +71,7 @@ public:
         std::uint64_t bytes = 0;
     };
     /// What is due. Errors: recording.write, recording.limit, recording.lost: the run is taken no further, and this is said once; recording.ended: what
-    /// was asked for cannot be kept any more.
+    /// was asked for cannot be kept any more. Of a run that lost records what came before them is kept, and an alarm in it is one that can be replayed.
     [[nodiscard]] Result<Kept> work();
     /// After the last block, once: what is still wished, and what nobody wished goes.
     [[nodiscard]] Result<Kept> finish();
@@ -77,9 +79,15 @@ public:
 private:
     struct Wish {
         std::string why;
-        Instant until{};
+        Instant at{}, until{};  ///< the moment that it is about, and what shall be kept
     };
     RunMemory(RecordingInfo info, Place place, Room room) : info_(std::move(info)), place_(std::move(place)), room_(room) {}
+    /// The earliest first: what somebody asks for does not wait for what comes behind an alarm. Mutex held.
+    void wish(Wish more);
+    /// Records were lost, and what came before them is still here or in a file without a name. Mutex held.
+    [[nodiscard]] bool sound_part() const {
+        return ended_ && ended_->code == "recording.lost" && (!blocks_.empty() || (on_disk_ > 0 && !kept_));
+    }
     [[nodiscard]] std::string path_for(std::string_view why, Instant at) const;
     /// Its file is begun where there is none, and has all blocks.
     [[nodiscard]] Result<void> write_blocks(const std::string& path, bool wished);
@@ -87,6 +95,8 @@ private:
     void discard();
     [[nodiscard]] Result<Kept> write(const Wish& wish);
     [[nodiscard]] Error end(Error why);
+    /// Mutex held.
+    [[nodiscard]] Error too_late(const Wish& wish) const;
     void clean() const;
     void keep_bounds() const;
 
@@ -109,7 +119,6 @@ private:
     // The thread that may wait.
     std::optional<RecordingWriter> file_;
     bool said_ = false;
-    std::uint64_t lost_ = 0;
 };
 
 }  // namespace taktwerk::runtime

@@ -65,9 +65,37 @@ Result<void> check_shared_object(const std::string& path) {
     return {};
 }
 
-std::string build_id_of(const std::string& path) {
+namespace {
+
+/// The notes of one segment. Each begins, and its description too, at a multiple of `alignment` from the segment's beginning (gABI, "Note Section").
+std::string build_id_in(std::ifstream& file, const Elf64_Phdr& segment, std::uint64_t alignment) {
     constexpr std::uint64_t longest_id = 40;
     constexpr std::uint32_t most_notes = 64;
+    const auto aligned = [alignment](std::uint64_t at) { return (at + alignment - 1) / alignment * alignment; };
+    std::uint64_t at = 0;
+    for (std::uint32_t n = 0; n < most_notes && at < segment.p_filesz && segment.p_filesz - at >= sizeof(Elf64_Nhdr); ++n) {
+        Elf64_Nhdr note{};
+        if (!read_at(file, segment.p_offset + at, note)) return {};
+        const auto name = at + sizeof note, description = aligned(name + note.n_namesz);
+        at = aligned(description + note.n_descsz);
+        std::array<char, 4> owner{};
+        if (note.n_type != NT_GNU_BUILD_ID || note.n_namesz != owner.size() || note.n_descsz == 0 || note.n_descsz > longest_id ||
+            !read_at(file, segment.p_offset + name, owner) || std::memcmp(owner.data(), ELF_NOTE_GNU, owner.size()) != 0)
+            continue;
+        std::string id;
+        for (std::uint32_t k = 0; k < note.n_descsz; ++k) {
+            unsigned char byte = 0;
+            if (!read_at(file, segment.p_offset + description + k, byte)) return {};
+            id += fmt::format("{:02x}", byte);
+        }
+        return id;
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string build_id_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     Elf64_Ehdr header{};
     if (!file || !read_at(file, 0, header)) return {};
@@ -75,26 +103,9 @@ std::string build_id_of(const std::string& path) {
         Elf64_Phdr segment{};
         if (!read_at(file, header.e_phoff + std::uint64_t{i} * sizeof segment, segment)) return {};
         if (segment.p_type != PT_NOTE) continue;
-        const std::uint64_t padding = segment.p_align == 8 ? 8 : 4;
-        const auto padded = [padding](std::uint64_t size) { return (size + padding - 1) / padding * padding; };
-        std::uint64_t at = 0;
-        for (std::uint32_t n = 0; n < most_notes && at < segment.p_filesz && segment.p_filesz - at >= sizeof(Elf64_Nhdr); ++n) {
-            Elf64_Nhdr note{};
-            if (!read_at(file, segment.p_offset + at, note)) return {};
-            const auto name = at + sizeof note, description = name + padded(note.n_namesz);
-            at = description + padded(note.n_descsz);
-            std::array<char, 4> owner{};
-            if (note.n_type != NT_GNU_BUILD_ID || note.n_namesz != owner.size() || note.n_descsz == 0 || note.n_descsz > longest_id ||
-                !read_at(file, segment.p_offset + name, owner) || std::memcmp(owner.data(), ELF_NOTE_GNU, owner.size()) != 0)
-                continue;
-            std::string id;
-            for (std::uint32_t k = 0; k < note.n_descsz; ++k) {
-                unsigned char byte = 0;
-                if (!read_at(file, segment.p_offset + description + k, byte)) return {};
-                id += fmt::format("{:02x}", byte);
-            }
-            return id;
-        }
+        // A linker may put notes of 4 and of 8 into one segment, which then says 8 (mold does).
+        for (const std::uint64_t alignment : {segment.p_align == 8 ? 8u : 4u, 4u})
+            if (auto id = build_id_in(file, segment, alignment); !id.empty()) return id;
     }
     return {};
 }

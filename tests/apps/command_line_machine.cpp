@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "apps/plot/trace_file.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -327,6 +328,43 @@ TEST_F(CommandLine, SigtermIsHeardBeforeTheBusIsUp) {
     ASSERT_TRUE(runtime.says("bus", 10s)) << runtime.text();
     runtime.signal(SIGTERM);
     EXPECT_EQ(runtime.wait(5s), exit_ok) << runtime.text();
+}
+
+// For a monitoring, which reads one key whatever is the matter.
+TEST_F(CommandLine, StatusOfAMachineThatDoesNotRunIsNotWell) {
+    const auto status = command({"status", "--json", "-s", path("nobody")});
+    EXPECT_EQ(status.code, exit_no_runtime);
+    const auto told = nlohmann::json::parse(status.text, nullptr, false);
+    ASSERT_TRUE(told.is_object()) << status.text;
+    EXPECT_EQ(told["well"], false);
+    EXPECT_EQ(told["unwell"].size(), 1u);
+    EXPECT_EQ(told["error"]["code"], "socket.no_runtime");
+}
+
+TEST_F(CommandLine, DoctorTakesTheTimesThatItsOwnWordsName) {
+    EXPECT_THAT(command({"doctor", "--no-measuring", "--cycle", "500us", "--computing", "200us"}).text, HasSubstr("for a cycle of 500 us"));
+    const auto refused = command({"doctor", "--no-measuring", "--cycle", "0us"});
+    EXPECT_EQ(refused.code, exit_usage);
+}
+
+// What a script reads is one JSON object, whatever was asked for and whether it could be done.
+TEST_F(CommandLine, DoctorsJsonIsOneObjectAlsoWhereNothingMayBeDone) {
+    for (const auto& words :
+         {std::vector<std::string>{"--cycle", "5s"}, {"--cpu", "1000"}, {"--no-measuring"}, {"--no-measuring", "--nic", "none0"}}) {
+        std::vector<std::string> all{"doctor", "--json"};
+        all.insert(all.end(), words.begin(), words.end());
+        const auto doctor = command(all);
+        EXPECT_TRUE(nlohmann::json::parse(doctor.text, nullptr, false).is_object()) << doctor.text;
+    }
+}
+
+TEST_F(CommandLine, DiagOfAFileThatIsNoneSaysSoAndWritesNothing) {
+    for (const auto& wrong : {path("none.yaml"), folder_}) {
+        const auto diag = command({"diag", wrong, "-o", path("x.tar")});
+        EXPECT_EQ(diag.code, exit_bad_file) << diag.text;
+        EXPECT_THAT(diag.text, HasSubstr(wrong));
+        EXPECT_FALSE(std::filesystem::exists(path("x.tar")));
+    }
 }
 
 }  // namespace

@@ -41,6 +41,9 @@ TEST(HealthOf, AMachineThatRunsIsWellAlsoWithAWarning) {
     EXPECT_EQ(json["tasks"][0]["run_max_us"], 40.0);
     EXPECT_THAT(health_text(h), HasSubstr("7 page faults of the cycle"));
     EXPECT_EQ(json["page_faults"], 7);
+    for (const auto* counted : {"cycles", "missed_ticks", "frames_lost", "page_faults"})
+        EXPECT_TRUE(json[counted].is_number_unsigned()) << counted << ": who reads it into a whole number takes no 60000.0";
+    EXPECT_TRUE(json["tasks"][0]["runs"].is_number_unsigned());
 }
 
 TEST(HealthOf, WhatStopsSomethingIsNamed) {

@@ -2,12 +2,14 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "apps/terminal/exit_code.hpp"
 #include "hmi_bridge/socket/client.hpp"
@@ -173,7 +175,8 @@ TEST_F(ReplayCommand, AMachineFileThatIsGoneIsAskedFor) {
     const auto machine = altered("demo.yaml", "cycle: 1 ms", "cycle: 1 ms");
     (void)command({"run", machine, "--virtual-time", "--duration", "2s", "--quiet", "--record", path("run.twrec")});
     ASSERT_TRUE(std::filesystem::exists(path("run.twrec")));
-    const auto moved = (std::filesystem::path(machine).parent_path() / "moved.yaml").string();  // beside it: its drives are named from there
+    const auto moved =
+        (std::filesystem::path(machine).parent_path() / "moved.yaml").string();  // beside it: its drives are named from there
     std::filesystem::rename(machine, moved);
     EXPECT_THAT(command({"replay", path("run.twrec")}).text, HasSubstr("taktwerk replay RECORDING MACHINE.yaml"));
     EXPECT_EQ(command({"replay", path("run.twrec"), moved, "--quiet"}).code, exit_ok);
@@ -219,8 +222,28 @@ TEST_F(ReplayCommand, WithWhatWasKeptTheRunBeginsAsItDid) {
         EXPECT_THAT(replay.text, HasSubstr("identical: "));
     }
     EXPECT_THAT(command({"replay", path("second.twrec"), "--show"}).text, HasSubstr("start_file"));
+    const auto shown = nlohmann::json::parse(command({"replay", path("second.twrec"), "--show", "--json"}).text, nullptr, false);
+    ASSERT_TRUE(shown.is_object());
+    EXPECT_EQ(shown["end"], "whole");
+    EXPECT_GT(shown["records"].get<int>(), 6000) << "one each cycle at least";
+    EXPECT_TRUE(std::ranges::any_of(shown["channels"], [](const auto& channel) { return channel["name"] == "start_file"; }));
     EXPECT_THAT(command({"replay", path("first.twrec"), "--show"}).text, Not(HasSubstr("start_file")));
     EXPECT_FALSE(std::filesystem::exists(path("kept"))) << "a replay keeps nothing";
+}
+
+// A link to itself is a file that nobody can read. The machine says that its positions are lost; so does the replay, which has no such link.
+TEST_F(ReplayCommand, WhatWasKeptAndCouldNotBeReadIsAnAlarmInTheReplayToo) {
+    std::filesystem::create_directory(path("kept"));
+    for (const char* name : {"retain.0", "retain.1"}) std::filesystem::create_symlink(name, path("kept") + "/" + name);
+    const auto run = command({"run", shipped + "five-drives.yaml", "--virtual-time", "--duration", "2s", "--no-events", "--retain",
+                              path("kept"), "--record", path("run.twrec")});
+    ASSERT_TRUE(run.code == exit_ok || run.code == exit_alarm) << run.text;
+    ASSERT_THAT(run.text, HasSubstr("home")) << "the control: it was an alarm";
+    std::filesystem::remove_all(path("kept"));
+
+    const auto replay = command({"replay", path("run.twrec"), "--until", "positions_lost"});
+    EXPECT_THAT(replay.text, HasSubstr("[positions_lost]"));
+    EXPECT_THAT(command({"replay", path("run.twrec"), "--quiet"}).text, HasSubstr("identical: "));
 }
 
 // Threads, a wake-up that is late, a clock that is nobody's: and yet the same again.

@@ -16,6 +16,7 @@
 #include "programs/api/abi.hpp"
 #include "runtime/tasks/io_image.hpp"
 #include "runtime/tasks/program_host.hpp"
+#include "runtime/tasks/shared_object_check.hpp"
 
 namespace taktwerk::runtime {
 namespace {
@@ -154,6 +155,36 @@ TEST_F(ProgramFile, EachBadOneOfAMachineIsOneErrorThatNamesTheProgram) {
     EXPECT_EQ(errors[2].code, "program.abi");
     for (std::size_t i = 0; i < 3; ++i) EXPECT_THAT(errors[i].text(), HasSubstr(config.programs[i].name));
     EXPECT_EQ(host.tasks().size(), 1u) << "the good one's";
+}
+
+/// A header, one PT_NOTE of this alignment, and its notes: 20h bytes of a property first, as gcc and mold lay them out.
+std::string with_notes(std::uint64_t alignment) {
+    Elf64_Ehdr header{};
+    header.e_phoff = sizeof header;
+    header.e_phentsize = sizeof(Elf64_Phdr);
+    header.e_phnum = 1;
+    std::string notes;
+    const auto add = [&notes](std::uint32_t type, const std::string& description) {
+        const Elf64_Nhdr note{4, static_cast<std::uint32_t>(description.size()), type};
+        notes.append(reinterpret_cast<const char*>(&note), sizeof note).append("GNU", 4).append(description);
+    };
+    add(NT_GNU_PROPERTY_TYPE_0, std::string(16, 'p'));
+    add(NT_GNU_ABI_TAG, std::string(16, 'a'));
+    add(NT_GNU_BUILD_ID, std::string("\x01\xab", 2) + std::string(18, '\0'));
+    Elf64_Phdr segment{};
+    segment.p_type = PT_NOTE;
+    segment.p_offset = sizeof header + sizeof segment;
+    segment.p_filesz = notes.size();
+    segment.p_align = alignment;
+    return std::string(reinterpret_cast<const char*>(&header), sizeof header)
+        .append(reinterpret_cast<const char*>(&segment), sizeof segment)
+        .append(notes);
+}
+
+TEST_F(ProgramFile, ItsBuildIdIsFoundHoweverTheLinkerAlignsItsNotes) {
+    for (const std::uint64_t alignment : {4u, 8u})
+        EXPECT_EQ(build_id_of(written("notes", with_notes(alignment))), "01ab" + std::string(36, '0')) << alignment;
+    EXPECT_EQ(build_id_of("/proc/self/exe").size(), 40u) << "of what this tree's linker makes: SHA-1";
 }
 
 }  // namespace

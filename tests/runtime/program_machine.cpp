@@ -204,14 +204,73 @@ TEST(ProgramFault, AnExceptionStopsTheAxesAlongTheirRampAndIsAnAlarm) {
     EXPECT_EQ(m.axis(0).set_velocity, 0.0);
     m.expect_no_jump();
 
-    // Reset and start again: as documented it runs.
+    // Reset, once, and start again: as documented it runs, and its axis with it.
     EXPECT_EQ(m.command(OperatorAction::reset).answer, Answer::accepted);
-    m.run(1s);
+    m.run(20ms);
+    EXPECT_EQ(m.state().alarm_count, 0u) << m.alarms();
     OperatorCommand start;
     start.action = OperatorAction::program_start;
     start.index = 0;
     EXPECT_EQ(m.command(start).answer, Answer::accepted);
     EXPECT_TRUE(m.until([&] { return m.state().programs[0] == ProgramState::running; }, 1s));
+    EXPECT_TRUE(m.until([&] { return m.axis(0).powered; }, 2s)) << m.alarms();
+}
+
+/// Powers and runs one axis, and stops it by an alarm of its own.
+template <char axis_name>
+class SaysStop final : public Program {
+public:
+    AxisRef axis;
+    Parameter jam;
+    MC_Power power;
+    MC_MoveVelocity move;
+    void declare(Declaration& d) override {
+        static constexpr char name = axis_name;
+        axis = d.axis(std::string_view(&name, 1));
+        jam = d.parameter(std::string{"jam_"} + axis_name, {.value = 0, .minimum = 0, .maximum = 1, .unit = "", .doc = ""});
+        d.alarm(0, Reaction::stop_axis, "A part is jammed", "零件卡住", "Take it out");
+        d.task<&SaysStop::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        power.Axis = move.Axis = axis;
+        power.Enable = true;
+        power(ctx);
+        move.Velocity = 60;
+        move.Execute = power.Status;
+        move(ctx);
+        ctx.alarm(0, ctx.get(jam) != 0);
+    }
+};
+
+TEST(ProgramAlarm, ThatStopsAxesStopsThoseOfItsProgramAndNoOthers) {
+    auto config = with_program(2, &entry_of<SaysStop<'x'>>);
+    add_program(config, "q", &entry_of<SaysStop<'y'>>);
+    TestMachine m{config};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 60 && m.axis(1).set_velocity == 60; }, 3s));
+    const auto jam = [&](double value) {
+        OperatorCommand c;
+        c.action = OperatorAction::set_parameter;
+        c.index = 0;
+        c.value = value;
+        return m.command(c).answer;
+    };
+
+    ASSERT_EQ(jam(1), Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 0; }, 2s)) << m.alarms();
+
+    EXPECT_EQ(m.axis(0).state, AxisState::ErrorStop);
+    EXPECT_EQ(m.state().alarm_count, 1u) << "one cause is one alarm: " << m.alarms();
+    EXPECT_EQ(m.axis(1).set_velocity, 60) << "the other program's axis";
+    EXPECT_EQ(m.state().programs[0], ProgramState::running);
+    m.expect_no_jump();
+
+    ASSERT_EQ(jam(0), Answer::accepted);
+    m.run(1s);
+    EXPECT_EQ(m.axis(0).state, AxisState::ErrorStop) << "it goes on behind a reset";
+    EXPECT_EQ(m.command(OperatorAction::reset).answer, Answer::accepted);
+    m.run(1s);
+    EXPECT_NE(m.axis(0).state, AxisState::ErrorStop) << m.alarms();
 }
 
 TEST(ProgramLoad, NamesThatTheMachineLacksAreAllReportedWithASuggestion) {

@@ -128,6 +128,19 @@ TEST(RetainStore, AFileThatCannotBeReadIsLostUntilItCanAndIsNotWrittenOver) {
     for (const auto* name : {"retain.0.unread", "retain.1.unread"}) EXPECT_TRUE(fs::is_symlink(folder.path / name)) << name;
 }
 
+// It happened before, and nobody has looked yet: what was kept then is not written over either.
+TEST(RetainStore, WhatIsSetAsideDoesNotTakeThePlaceOfWhatWasSetAsideBefore) {
+    Folder folder;
+    write(folder.path / "retain.0.unread", "of the first time");
+    fs::create_symlink("retain.0", folder.path / "retain.0");
+    RetainStore store(folder.path);
+    ASSERT_EQ(store.load().damage.size(), 1u);
+    ASSERT_TRUE(store.save(keeping({at("x", 1)})).ok());
+    EXPECT_TRUE(fs::is_regular_file(folder.path / "retain.0.unread"));
+    EXPECT_EQ(fs::file_size(folder.path / "retain.0.unread"), std::string("of the first time").size());
+    EXPECT_TRUE(fs::is_symlink(folder.path / "retain.0.unread.2"));
+}
+
 TEST(RetainStore, APipeInThePlaceOfAFileHoldsNobodyUp) {
     Folder folder;
     ASSERT_EQ(::mkfifo((folder.path / "retain.0").c_str(), 0600), 0);

@@ -253,6 +253,46 @@ TEST_F(TaskReactions, ItsProgramStartsAgainOnlyWhenTheTaskHasComeBack) {
     expect_the_rest_is_unharmed();
 }
 
+// Once it has come back one reset is enough: with the fault its alarm goes, too.
+TEST_F(TaskReactions, OneResetTakesTheFaultAndItsAlarm) {
+    for (const auto reaction : {OverrunReaction::stop_program, OverrunReaction::stop_machine}) {
+        panel.overrun = reaction;
+        begin();
+        ASSERT_GT(cycles_until_ramp(100), 0);
+        m().run(20ms);  // it comes back
+        ASSERT_EQ(m().state().alarm_count, 1u) << m().alarms();
+        EXPECT_EQ(m().command(OperatorAction::reset).answer, Answer::accepted);
+        m().run(20ms);
+        EXPECT_EQ(m().state().alarm_count, 0u) << m().alarms();
+    }
+}
+
+// It may compute for ever as long as its program runs; who stops the program and cannot start it again finds the reason among the alarms.
+TEST_F(TaskReactions, OfAProgramThatAPersonHasStoppedTheTaskThatHangsIsNamed) {
+    panel.watchdog = 500ms;
+    panel.overrun = OverrunReaction::count;
+    begin();
+    for (int i = 0; i < 10; ++i) cycle();  // the release at 4 is the last one that it ended in time
+    OperatorCommand stop;
+    stop.action = OperatorAction::program_stop;
+    stop.index = 0;
+    EXPECT_TRUE(m().machine->submit(stop));
+    cycle();
+    EXPECT_EQ(m().state().programs[0], ProgramState::stopped);
+    for (int i = 0; i < 400; ++i) cycle();
+    EXPECT_EQ(m().state().alarm_count, 0u) << "the control: its time is not over: " << m().alarms();
+    for (int i = 0; i < 200; ++i) cycle();
+    EXPECT_EQ(alarm_ids(), std::vector{id(MachineAlarm::task_watchdog)}) << m().alarms();
+    EXPECT_EQ(m().state().programs[0], ProgramState::stopped);
+
+    m().run(10ms);  // it comes back
+    EXPECT_EQ(m().command(OperatorAction::reset).answer, Answer::accepted);
+    m().run(10ms);
+    EXPECT_EQ(m().state().alarm_count, 0u) << m().alarms();
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::accepted);
+    EXPECT_TRUE(m().until([&] { return m().axis(0).set_velocity == 60; }, 3s)) << m().alarms();
+}
+
 /// Notes what its tasks are told of themselves.
 class Asks final : public Program {
 public:

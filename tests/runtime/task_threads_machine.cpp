@@ -10,6 +10,7 @@
 #include "runtime/alarms.hpp"
 #include "runtime/recording/task_times_record.hpp"
 #include "runtime/run/realtime_runner.hpp"
+#include "runtime/run/task_threads.hpp"
 #include "tests/machines/replay_check.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
@@ -365,6 +366,37 @@ TEST(TaskThreads, WhoComputesTooLongLosesItsPriorityUntilItComesBack) {
     EXPECT_EQ(before_priority, 18);
     EXPECT_EQ(hanging, SCHED_OTHER);
     EXPECT_EQ(after, 18);
+}
+
+/// Time that passes when somebody sleeps, and how often that was; ends after ten seconds.
+class CountingClock final : public Clock {
+public:
+    explicit CountingClock(std::atomic<bool>& stop) : stop_(stop) {}
+    [[nodiscard]] Instant now() const noexcept override { return now_.load(); }
+    void sleep_until(Instant deadline) noexcept override {
+        ++sleeps;
+        now_ = std::max(deadline, now_.load());
+        if (now_.load() > Instant{} + 110s) stop_ = true;
+    }
+    std::atomic<int> sleeps{0};
+
+private:
+    std::atomic<Instant> now_{Instant{} + 100s};
+    std::atomic<bool>& stop_;
+};
+
+// Four looks a cycle are 10,000 wake-ups in these ten seconds. An eighth of the period, 2.5 ms, are 4,000: it costs next to nothing, and
+// the first run behind a start is early enough.
+TEST(TaskThreads, TheTaskOfAProgramAtRestSeldomLooksForItsRelease) {
+    auto config = looping_machine();
+    config.start_mode = Mode::manual;
+    TestMachine m{config};
+    std::atomic<bool> stop{false};
+    CountingClock clock{stop};
+    TaskThreads threads{*m.machine, clock};
+    (void)threads.start(stop, 0);
+    threads.join();
+    EXPECT_NEAR(clock.sleeps, 4000, 10);
 }
 
 }  // namespace

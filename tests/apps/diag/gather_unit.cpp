@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -55,6 +56,51 @@ TEST_F(Gathering, AFileThatIsWrongIsPackedWithWhatIsWrong) {
     ASSERT_NE(part("machine/problems.txt"), nullptr);
     EXPECT_THAT(part("machine/problems.txt")->bytes, HasSubstr("password"));
     EXPECT_THAT(part("machine/problems.txt")->bytes, Not(HasSubstr("hunter2")));
+}
+
+// The key of a secret may stand before the cut, and the secret behind it.
+TEST_F(Gathering, ATextIsMaskedBeforeItIsCut) {
+    std::string text = "start: 1\n" + std::string("secret: |\n");
+    const auto line = "  hunter2 " + std::string(90, 'x') + "\n";
+    while (text.size() < most_text_bytes + 10'000) text += line;
+    add_text(all, "log.txt", "a log", text + "end: 1\n");
+    ASSERT_EQ(all.parts.size(), 1u);
+    EXPECT_THAT(all.parts[0].bytes, Not(HasSubstr("hunter2")));
+    EXPECT_THAT(all.parts[0].bytes, HasSubstr("end: 1"));
+
+    std::string noise;
+    while (noise.size() < most_text_bytes + 10'000) noise += "line of a log\n";
+    add_text(all, "long.txt", "a log", noise);
+    EXPECT_LE(all.parts[1].bytes.size(), most_text_bytes) << "the control: it is cut";
+    EXPECT_THAT(all.parts[1].about, HasSubstr("its last 4 MB"));
+}
+
+TEST_F(Gathering, TwoFilesOfOneNameAreTwoParts) {
+    add_text(all, "machine/x.yaml", "one", "1\n");
+    add_text(all, "machine/x.yaml", "two", "2\n");
+    add_text(all, "machine/x.yaml", "three", "3\n");
+    EXPECT_EQ(part("machine/x.yaml")->bytes, "1\n");
+    ASSERT_NE(part("machine/x.2.yaml"), nullptr);
+    EXPECT_EQ(part("machine/x.2.yaml")->bytes, "2\n");
+    EXPECT_EQ(part("machine/x.3.yaml")->bytes, "3\n");
+}
+
+TEST_F(Gathering, ReasonsAreMaskedToo) {
+    all.missing = {"log: mqtt://plc:hunter2@broker does not answer", "cell.yaml: password: hunter2"};
+    mask_reasons(all);
+    for (const auto& reason : all.missing) EXPECT_THAT(reason, Not(HasSubstr("hunter2")));
+    EXPECT_THAT(all.missing[0], HasSubstr("does not answer"));
+}
+
+// A pipe would never end, and a folder is no text.
+TEST_F(Gathering, WhatIsNoFileIsSaidAndHoldsNobodyUp) {
+    ASSERT_EQ(::mkfifo((folder / "pipe.yaml").c_str(), 0600), 0);
+    for (const auto& path : {folder / "pipe.yaml", folder}) {
+        all = {};
+        gather_files(all, path.string(), true);
+        EXPECT_THAT(all.parts, IsEmpty()) << path;
+        EXPECT_THAT(all.missing, Contains(HasSubstr("cannot be read"))) << path;
+    }
 }
 
 TEST_F(Gathering, OneThatIsNotThereIsSaid) {
@@ -171,7 +217,7 @@ TEST_F(Gathering, EverythingThatARunningMachineTells) {
         }};
     auto client = hmi::Client::connect((folder / "cell.sock").string());
     ASSERT_TRUE(client.ok()) << client.error().text();
-    gather_running(all, *client);
+    EXPECT_TRUE(gather_running(all, *client));
 
     ASSERT_NE(part("running/state.json"), nullptr);
     EXPECT_THAT(part("running/state.json")->bytes, Not(HasSubstr("hunter2")));
@@ -187,6 +233,25 @@ TEST_F(Gathering, EverythingThatARunningMachineTells) {
     EXPECT_NE(part("recordings/cell-7.twscope"), nullptr);
     EXPECT_EQ(part("running/bus.json"), nullptr);
     EXPECT_THAT(all.missing, ::testing::ElementsAre(HasSubstr("no cycle yet"), HasSubstr("2 older recordings")));
+}
+
+// Each question that is not answered takes three seconds: somebody waits for the file. Nobody takes this connection.
+TEST_F(Gathering, AMachineThatHangsIsAskedOnce) {
+    const auto path = (folder / "cell.sock").string();
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int listens = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    ASSERT_EQ(::bind(listens, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    ASSERT_EQ(::listen(listens, 4), 0);
+    auto client = hmi::Client::connect(path);
+    ASSERT_TRUE(client.ok()) << client.error().text();
+
+    EXPECT_FALSE(gather_running(all, *client));
+
+    EXPECT_THAT(all.parts, IsEmpty());
+    EXPECT_THAT(all.missing, ::testing::ElementsAre(HasSubstr("did not answer in time"), HasSubstr("not asked any more")));
+    ::close(listens);
 }
 
 }  // namespace

@@ -82,6 +82,28 @@ TEST(Mask, TheLinesOfABlockAreMaskedUntilItEnds) {
               "tls:\n  private_key: |\n    <masked>\n\n    <masked>\n  port: 8883\n");
 }
 
+// Also where it stands in a list or a map of one line; what follows is left as it is.
+TEST(Mask, AListOrMapOfSecretsIsOneValue) {
+    EXPECT_EQ(masked(R"({"password":["one","two"],"name":"cell"})").text, R"({"password":<masked>,"name":"cell"})");
+    EXPECT_EQ(masked("a: { x: 1, secrets: { a: one, b: 'tw}o' }, y: 2 }").text, "a: { x: 1, secrets: <masked>, y: 2 }");
+}
+
+// RFC 7468: whoever prints a key, its lines look like this.
+TEST(Mask, APrivateKeyIsMaskedWhereverItStands) {
+    EXPECT_EQ(masked("a\n-----BEGIN EC PRIVATE KEY-----\nAAAA\n-----END EC PRIVATE KEY-----\nb\n").text,
+              "a\n<masked>\n<masked>\n<masked>\nb\n");
+    EXPECT_EQ(masked("private_key: -----BEGIN PRIVATE KEY-----\nAAAA\n-----END PRIVATE KEY-----\nb: 1\n").text,
+              "<masked>\n<masked>\n<masked>\nb: 1\n");
+    EXPECT_THAT(masked("-----BEGIN PRIVATE KEY-----\nAAAA\n").where, ElementsAre("line 1: a private key"));
+    EXPECT_EQ(masked("-----BEGIN CERTIFICATE-----\nAAAA\n").text, "-----BEGIN CERTIFICATE-----\nAAAA\n") << "is for everybody";
+}
+
+TEST(Mask, ShortNamesAndHeadersOfRequestsAreSecretsToo) {
+    EXPECT_EQ(masked("Authorization: Bearer hunter2\npwd: hunter2\nmqtt_pass: hunter2\n").text,
+              "Authorization: <masked>\npwd: <masked>\nmqtt_pass: <masked>\n");
+    for (const auto* text : {"bypass: 1", "passes: 3", "compass: north", "passed: 7"}) EXPECT_EQ(masked(text).text, text);
+}
+
 TEST(Mask, OrdinaryTextIsLeftAsItIs) {
     for (const auto* text :
          {"", "\n", "name: cell\naxes:\n  - name: x\n", "# no passwords here", "the password of the drive is asked for", "monkey: 7",

@@ -112,6 +112,69 @@ TEST_F(Delivered, WhatSomebodyElseHasChangedSinceIsLeftAndSaid) {
     EXPECT_EQ(host.text("/proc/sys/net/core/rmem_max"), "4194304\n");
     EXPECT_EQ(host.text("/etc/sysctl.d/60-taktwerk-compaction.conf"), "# mine now\n");
     EXPECT_EQ(host.text("/proc/sys/vm/compact_unevictable_allowed"), "1\n");
+    for (const auto& outcome : *back)
+        if (outcome.left && outcome.words.starts_with("/proc")) {
+            EXPECT_THAT(outcome.words, HasSubstr("before --apply it was 212992"));
+        }
+
+    // It is still known when they have given their own up.
+    host.put("/proc/sys/net/core/rmem_max", "2097152\n");
+    const auto later = changes().revert();
+    ASSERT_TRUE(later.ok());
+    ASSERT_EQ(later->size(), 2u) << "what was taken back is recorded no more";
+    EXPECT_EQ(host.text("/proc/sys/net/core/rmem_max"), "212992\n");
+    EXPECT_EQ(host.text("/etc/sysctl.d/60-taktwerk-compaction.conf"), "# mine now\n");
+}
+
+// Theirs was the last value that was not ours.
+TEST_F(Delivered, WhatSomebodyElseHasSetBetweenTwoAppliesComesBack) {
+    const HostChange wanted{HostChange::Kind::knob, "/proc/sys/net/core/rmem_max", "2097152"};
+    ASSERT_TRUE(changes().apply({wanted}).ok());
+    host.put("/proc/sys/net/core/rmem_max", "300000\n");
+    ASSERT_TRUE(changes().apply({wanted}).ok());
+    EXPECT_EQ(host.text("/proc/sys/net/core/rmem_max"), "2097152\n");
+    ASSERT_TRUE(changes().revert().ok());
+    EXPECT_EQ(host.text("/proc/sys/net/core/rmem_max"), "300000\n");
+    EXPECT_FALSE(host.has(record_file));
+}
+
+TEST_F(Delivered, AFileKeepsItsRights) {
+    const std::string path = "/etc/sysctl.d/60-taktwerk-receive-buffer.conf";
+    host.put(path, "net.core.rmem_max = 1\n");
+    std::filesystem::permissions(host.at(path), std::filesystem::perms{0600});
+    const auto rights = [&] { return std::filesystem::status(host.at(path)).permissions(); };
+    ASSERT_TRUE(changes().apply({{HostChange::Kind::file, path, "net.core.rmem_max = 2\n"}}).ok());
+    EXPECT_EQ(host.text(path), "net.core.rmem_max = 2\n");
+    EXPECT_EQ(rights(), std::filesystem::perms{0600});
+    ASSERT_TRUE(changes().revert().ok());
+    EXPECT_EQ(rights(), std::filesystem::perms{0600});
+}
+
+// A folder stands where the file should be. A setting of now alone would be gone with a restart, and the doctor would find nothing wrong until then.
+TEST_F(Delivered, WhatCannotBeForTheNextStartIsNotForNowEither) {
+    host.put("/etc/sysctl.d/60-x.conf/in_the_way", "").put("/proc/sys/vm/compact_unevictable_allowed", "1\n");
+    const HostChange now{HostChange::Kind::knob, "/proc/sys/vm/compact_unevictable_allowed", "0"};
+    const auto done = changes().apply_together({now, {HostChange::Kind::file, "/etc/sysctl.d/60-x.conf", "x\n"}});
+    ASSERT_TRUE(done.ok());
+    ASSERT_EQ(done->size(), 1u);
+    EXPECT_TRUE(done->front().error.has_value());
+    EXPECT_EQ(host.text("/proc/sys/vm/compact_unevictable_allowed"), "1\n");
+
+    const auto both = changes().apply_together({now, {HostChange::Kind::file, "/etc/sysctl.d/60-y.conf", "y\n"}});
+    ASSERT_TRUE(both.ok());
+    EXPECT_EQ(both->size(), 2u) << "the control";
+    EXPECT_EQ(host.text("/proc/sys/vm/compact_unevictable_allowed"), "0\n");
+}
+
+TEST_F(Delivered, WhatIsNotThereAnyMoreIsForgotten) {
+    ASSERT_TRUE(changes().apply({{HostChange::Kind::knob, "/proc/sys/net/core/rmem_max", "2097152"}}).ok());
+    std::filesystem::remove(host.at("/proc/sys/net/core/rmem_max"));
+    const auto back = changes().revert();
+    ASSERT_TRUE(back.ok());
+    ASSERT_EQ(back->size(), 1u);
+    EXPECT_THAT(back->front().words, HasSubstr("is not there any more"));
+    EXPECT_FALSE(back->front().left);
+    EXPECT_FALSE(host.has(record_file));
 }
 
 TEST_F(Delivered, AFileThatWasThereComesBackToTheByte) {

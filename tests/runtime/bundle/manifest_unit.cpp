@@ -95,6 +95,19 @@ TEST(Manifest, ItsFilesBelongTogether) {
     EXPECT_THAT(problem_of(text_of(inside)), HasSubstr("'machine/cell.yaml/x' lies in a file"));
 }
 
+// One reader takes the first, another one the last: what was signed would mean two things.
+TEST(Manifest, AKeyThatStandsTwiceIsRefusedWhereverItIs) {
+    const auto text = text_of(whole());
+    ASSERT_TRUE(manifest_of(text, "x").ok()) << "the control";
+    for (const char* key : {"\"name\":", "\"target\":", "\"abi\":", "\"sha256\":"}) {
+        auto twice = text;
+        const auto at = twice.find(key);
+        ASSERT_NE(at, std::string::npos) << key;
+        twice.insert(at, std::string(key) + " \"0\", ");
+        EXPECT_THAT(problem_of(twice), HasSubstr("stands there twice")) << key;
+    }
+}
+
 TEST(Manifest, WhatIsNoJsonIsRefused) {
     for (const auto& text : {std::string(), std::string("[]"), std::string("null"), text_of(whole()).substr(0, 100),
                              std::string(100'000, '['), std::string("{\"a\":{\"a\":{\"a\":{\"a\":{\"a\":{}}}}}}")})

@@ -231,14 +231,67 @@ TEST_F(RunOfAMachine, AFolderThatIsGoneCostsTheReplayAndNoMore) {
     EXPECT_EQ(memory->state().memory, 0u);
 }
 
-TEST_F(RunOfAMachine, LostRecordsAreSaidAndNothingIsKeptThatCouldNotBeReplayed) {
+// What came before a loss is whole; what comes behind it is not.
+TEST_F(RunOfAMachine, LostRecordsAreSaidAndWhatCameBeforeThemIsKeptForWhoAsks) {
     ASSERT_NO_FATAL_FAILURE(start(plenty));
-    machine->run(200ms);
+    machine->run(400ms);
     memory->take({}, newest, 3);
     machine->run(200ms);
     ASSERT_EQ(errors.size(), 1u);
     EXPECT_EQ(errors[0].code, "recording.lost");
-    EXPECT_EQ(memory->keep(machine->clock.now()).error().code, "recording.ended");
+    EXPECT_TRUE(kept.empty());
+    EXPECT_TRUE(files().empty()) << "nobody has asked";
+
+    const auto answer = memory->keep(machine->clock.now());
+    ASSERT_FALSE(answer.ok());
+    EXPECT_EQ(answer.error().code, "recording.ended");
+    machine->run(100ms);
+    ASSERT_EQ(files().size(), 1u);
+    const auto path = folder + "/" + *files().begin();
+    EXPECT_THAT(answer.error().remedy, HasSubstr(path));
+    ASSERT_EQ(errors.size(), 2u);
+    EXPECT_EQ(errors[1].code, "recording.ended") << "that moment is not in it";
+    EXPECT_THAT(errors[1].remedy, HasSubstr(path));
+    expect_identical(path, 300);
+
+    drive_fault("x");
+    machine->run(1s);
+    EXPECT_EQ(errors.size(), 3u);
+    EXPECT_EQ(files().size(), 1u) << "nothing more comes of it";
+}
+
+TEST_F(RunOfAMachine, AnAlarmBeforeALossCanBeReplayed) {
+    ASSERT_NO_FATAL_FAILURE(start(plenty));
+    machine->run(200ms);
+    drive_fault("x");
+    machine->run(300ms);
+    ASSERT_TRUE(kept.empty()) << "the half second behind it is not over";
+    memory->take({}, newest, 3);
+    machine->run(10ms);
+    ASSERT_EQ(kept.size(), 1u);
+    EXPECT_EQ(kept[0].why, "drive_fault");
+    expect_identical(kept[0].path, 300);
+}
+
+// What is asked for is there at once, also while what comes behind an alarm is awaited.
+TEST_F(RunOfAMachine, WhoAsksDoesNotWaitForWhatComesBehindAnAlarm) {
+    ASSERT_NO_FATAL_FAILURE(start(plenty));
+    machine->run(200ms);
+    drive_fault("x");
+    machine->run(50ms);
+    EXPECT_FALSE(memory->state().asked_waits);
+    ASSERT_TRUE(memory->keep(machine->clock.now()).ok());
+    EXPECT_TRUE(memory->state().asked_waits);
+    machine->run(150ms);
+    ASSERT_EQ(kept.size(), 1u);
+    EXPECT_EQ(kept[0].why, "") << "asked for";
+    EXPECT_FALSE(memory->state().asked_waits);
+    EXPECT_TRUE(memory->state().waits) << "what comes behind the alarm";
+    machine->run(500ms);
+    ASSERT_EQ(kept.size(), 2u);
+    EXPECT_EQ(kept[1].why, "drive_fault");
+    EXPECT_EQ(kept[1].path, kept[0].path);
+    EXPECT_GE(kept[1].covered - kept[0].covered, 300ms);
 }
 
 TEST_F(RunOfAMachine, WhatAKilledRunLeftUnfinishedGoesAndOtherFilesStay) {
