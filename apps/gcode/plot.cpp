@@ -82,7 +82,7 @@ int picture(const PictureOptions& options) {
 }  // namespace
 
 void add_gcode_plot(CLI::App& gcode, Action& action) {
-    auto* sub = gcode.add_subcommand("plot", "draw the path as SVG: XY above, XZ below, one scale; rapids dashed (needs gnuplot)");
+    auto* sub = gcode.add_subcommand("plot", "draw the path as SVG: XY above, XZ below; rapids dashed (needs gnuplot)");
     auto options = std::make_shared<PictureOptions>();
     add_program_options(*sub, options->program);
     sub->add_option("-o,--output", options->output, "SVG file; default: the program's name with .svg");

@@ -18,7 +18,7 @@ constexpr std::size_t most_points = 2'000'000;
 // Pixels.
 constexpr double picture_width = 1000, left_margin = 84, right_margin = 20, heading = 64, footing = 50, between = 46;
 constexpr double panel_width = picture_width - left_margin - right_margin;
-constexpr double highest_plan = 720, lowest_plan = 90, highest_side = 320, lowest_side = 70;
+constexpr double highest_plan = 720, lowest_plan = 90, highest_side = 320, lowest_side = 70, stretched_side = 160;
 
 PathPoint position_of(const gcode::AxisValues& at) { return {at[0], at[1], at[2]}; }
 double apart(const PathPoint& a, const PathPoint& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
@@ -122,11 +122,14 @@ Result<std::string> program_picture(const gcode::ProgramSummary& summary, const 
         return Error{"gcode.nothing_to_draw", words.title, "the program has no move", "Check whether it is the file that was meant."};
     const auto& extents = summary.extents();
     const auto size_of = [](const gcode::Extent& extent) { return extent.most - extent.least; };
-    // One scale for all three: mm per pixel, with a margin of a twentieth.
-    const double mm =
-        1.05 * std::max({size_of(extents[0]) / panel_width, size_of(extents[1]) / highest_plan, size_of(extents[2]) / highest_side, 1e-6});
+    // mm per pixel, with a margin of a twentieth. Z has the same scale as long as that is a picture of it: a retract of 100 mm shall not make a dot of a small part.
+    const double mm = 1.05 * std::max({size_of(extents[0]) / panel_width, size_of(extents[1]) / highest_plan,
+                                       size_of(extents[2]) / 50 / highest_side, 1e-6});
     const double plan = std::clamp(1.05 * size_of(extents[1]) / mm, lowest_plan, highest_plan);
-    const double side = std::clamp(1.05 * size_of(extents[2]) / mm, lowest_side, highest_side);
+    const double true_side = 1.05 * size_of(extents[2]) / mm;
+    const bool scaled = size_of(extents[2]) > 0 && (true_side > highest_side || true_side < lowest_side / 2);
+    const double side = scaled ? stretched_side : std::clamp(true_side, lowest_side, highest_side);
+    const double side_mm = scaled ? 1.05 * size_of(extents[2]) / stretched_side : mm;
     const double height = heading + plan + between + side + footing;
 
     PictureScript script(height);
@@ -153,12 +156,12 @@ Result<std::string> program_picture(const gcode::ProgramSummary& summary, const 
     const auto across = around(extents[0], panel_width * mm);
     script.panel(heading, plan, across, around(extents[1], plan * mm), "Y", "1:2");
     const double below = heading + plan + between;
-    script.panel(below, side, across, around(extents[2], side * mm), "Z", "1:3");
+    script.panel(below, side, across, around(extents[2], side * side_mm), scaled ? "Z *" : "Z", "1:3");
     script.line("unset label; unset xtics; unset ytics; unset border; unset grid; set yrange [0:1]");
     script.label(left_margin, 22, words.title, "left", 16, "#101010");
     script.label(left_margin, 44,
-                 fmt::format("{} moves; mm, machine coordinates; dashed: rapids; the point: its start{}", summary.moves(),
-                             path.cut_off() ? "; cut off: there was too much of it" : ""),
+                 fmt::format("{} moves; mm, machine coordinates; dashed: rapids; the point: its start{}{}", summary.moves(),
+                             scaled ? "; * has a scale of its own" : "", path.cut_off() ? "; cut off: there was too much of it" : ""),
                  "left", 10, "#606060");
     script.label(left_margin + panel_width / 2, height - 14, "X", "center", 11, "#202020");
     script.line("plot NaN notitle");

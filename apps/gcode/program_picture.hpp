@@ -1,5 +1,5 @@
 #pragma once
-// A program's path as gnuplot's script for one SVG: XY above, XZ below, both with one scale. Rapids are dashed.
+// A program's path as gnuplot's script for one SVG: XY above, XZ below; X and Y have one scale, Z too where that shows something. Rapids are dashed.
 
 #include <array>
 #include <cstddef>

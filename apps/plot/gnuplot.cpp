@@ -87,7 +87,8 @@ Result<void> draw_with_gnuplot(const std::string& script) {
 }
 
 std::string in_gnuplot_quotes(std::string_view text) {
-    std::string out = "'";
+    // A doubled quote directly behind the opening one would be an empty string to it.
+    std::string out = text.starts_with('\'') ? "' " : "'";
     for (const char c : text) {
         if (c == '\'') out += '\'';
         out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;

@@ -10,7 +10,7 @@
 namespace taktwerk::apps {
 
 /// For gnuplot's single-quoted strings: the only ones in which it carries out nothing (backticks are a shell command in double quotes) and
-/// knows no escapes but the doubled quote.
+/// knows no escapes but the doubled quote. A text that begins with a quote gets a blank in front.
 [[nodiscard]] std::string in_gnuplot_quotes(std::string_view text);
 /// A file, whatever its name: "|name" would be a command to write to.
 [[nodiscard]] std::string gnuplot_file(const std::string& path);

@@ -8,9 +8,8 @@ namespace {
 
 using Group = CodeGroup;
 
-constexpr std::string_view cycles = "canned cycles are not offered; write G0 and G1";
-constexpr std::string_view compensation =
-    "cutter compensation is not offered, because it would change the programmed path; have it done by what makes the program";
+constexpr std::string_view cycles = "canned cycles have to be written out as G0 and G1";
+constexpr std::string_view compensation = "cutter compensation would change the programmed path; have it done by what makes the program";
 constexpr std::string_view other_dialect_units = "in RS274 the units are G20 (inch) and G21 (mm)";
 
 constexpr CodeEntry g_table[] = {
@@ -19,13 +18,13 @@ constexpr CodeEntry g_table[] = {
     {20, Group::motion},
     {30, Group::motion},
     {40, Group::non_modal},
-    {50, Group::motion, "splines are not offered; use G1, G2, G3"},
-    {51, Group::motion, "splines are not offered; use G1, G2, G3"},
-    {52, Group::motion, "splines are not offered; use G1, G2, G3"},
-    {53, Group::motion, "splines are not offered; use G1, G2, G3"},
+    {50, Group::motion, "splines have to be written as G1, G2 and G3"},
+    {51, Group::motion, "splines have to be written as G1, G2 and G3"},
+    {52, Group::motion, "splines have to be written as G1, G2 and G3"},
+    {53, Group::motion, "splines have to be written as G1, G2 and G3"},
     {70, Group::units, "diameter mode belongs to lathes"},
     {80, Group::units, "radius mode belongs to lathes, and is what holds anyway"},
-    {90, Group::non_modal, "an exact stop of one block is not offered; use G61.1"},
+    {90, Group::non_modal, "there is no exact stop for one block; use G61.1"},
     {100, Group::non_modal},
     {170, Group::plane},
     {180, Group::plane},
@@ -41,10 +40,10 @@ constexpr CodeEntry g_table[] = {
     {301, Group::non_modal, "reference positions are settings of the machine, not of a program"},
     {330, Group::motion, "threading needs a spindle that is measured"},
     {331, Group::motion, "threading needs a spindle that is measured"},
-    {382, Group::motion, "probing is not offered in a program"},
-    {383, Group::motion, "probing is not offered in a program"},
-    {384, Group::motion, "probing is not offered in a program"},
-    {385, Group::motion, "probing is not offered in a program"},
+    {382, Group::motion, "probing is the machine program's, not a G-code program's"},
+    {383, Group::motion, "probing is the machine program's, not a G-code program's"},
+    {384, Group::motion, "probing is the machine program's, not a G-code program's"},
+    {385, Group::motion, "probing is the machine program's, not a G-code program's"},
     {400, Group::compensation},
     {410, Group::compensation, compensation},
     {411, Group::compensation, compensation},
@@ -54,8 +53,8 @@ constexpr CodeEntry g_table[] = {
     {431, Group::length, "lengths come from the tool table; use G43 H"},
     {432, Group::length, "only one tool's length holds at a time; use G43 H"},
     {490, Group::length},
-    {500, Group::non_modal, "scaling is not offered"},
-    {510, Group::non_modal, "scaling is not offered"},
+    {500, Group::non_modal, "coordinates cannot be scaled"},
+    {510, Group::non_modal, "coordinates cannot be scaled"},
     {520, Group::non_modal, "controls disagree about it; use G92, or G10 L2"},
     {530, Group::non_modal},
     {540, Group::coordinates},
@@ -71,8 +70,8 @@ constexpr CodeEntry g_table[] = {
     {610, Group::path_mode},
     {611, Group::path_mode},
     {640, Group::path_mode},
-    {680, Group::non_modal, "rotated coordinates are not offered"},
-    {690, Group::non_modal, "rotated coordinates are not offered"},
+    {680, Group::non_modal, "coordinates cannot be rotated"},
+    {690, Group::non_modal, "coordinates cannot be rotated"},
     {700, Group::units, other_dialect_units},
     {710, Group::units, other_dialect_units},
     {730, Group::motion, cycles},
@@ -136,12 +135,12 @@ constexpr CodeEntry m_table[] = {
     {66, Group::user, outputs},
     {67, Group::user, outputs},
     {68, Group::user, outputs},
-    {70, Group::user, "subprograms are not offered"},
-    {71, Group::user, "subprograms are not offered"},
-    {72, Group::user, "subprograms are not offered"},
-    {73, Group::user, "subprograms are not offered"},
-    {98, Group::user, "subprograms are not offered; write the blocks out"},
-    {99, Group::user, "subprograms are not offered; write the blocks out"},
+    {70, Group::user, "there are no subprograms, and so nothing to put aside"},
+    {71, Group::user, "there are no subprograms, and so nothing to put aside"},
+    {72, Group::user, "there are no subprograms, and so nothing to put aside"},
+    {73, Group::user, "there are no subprograms, and so nothing to put aside"},
+    {98, Group::user, "there are no subprograms; write the blocks out"},
+    {99, Group::user, "there are no subprograms; write the blocks out"},
 };
 
 /// Entry 0 of an index is nothing.

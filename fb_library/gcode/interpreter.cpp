@@ -50,7 +50,9 @@ void Interpreter::begin_here(const Block& block) noexcept {
 }
 
 Interpreter::Step Interpreter::read_block() noexcept {
-    switch (lines_.next()) {
+    const auto read = lines_.next();
+    counts_.lines = lines_.number();
+    switch (read) {
         case SourceLines::Step::need_text: return Step::need_text;
         case SourceLines::Step::fault: fault_ = lines_.fault(); return Step::fault;
         case SourceLines::Step::end: {
@@ -65,7 +67,6 @@ Interpreter::Step Interpreter::read_block() noexcept {
         }
         case SourceLines::Step::line: break;
     }
-    ++counts_.lines;
     const auto deletable = options_.block_delete ? Deletable::left_out : Deletable::carried_out;
     if (parse_block(lines_.text(), lines_.number(), deletable, block_, fault_) != FaultKind::none) return Step::fault;
     if (block_.deletable && options_.block_delete) {

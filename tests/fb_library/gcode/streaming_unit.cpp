@@ -17,7 +17,7 @@ public:
             if (ended_) return {TextState::end, 0};
             ended_ = left_ == 0;
             if (ended_) waiting_ = "M2\n";
-            else waiting_ = left_-- % 2 == 0 ? "G91 G1 F600 X1.25 Y-3.125 Z0.001\n" : "G3 X-1.25 Y3.125 R20 M101 P3 (cut)\n";
+            else waiting_ = left_-- % 2 == 0 ? "G91 G1 F600 X1.25 Y-3.125 Z0.001\n" : "G3 X-1.25 Y3.125 R20 M101 Q3 (cut)\n";
         }
         const auto bytes = std::min(into.size(), waiting_.size());
         std::copy_n(waiting_.begin(), bytes, into.begin());
