@@ -23,7 +23,7 @@ double swept(PlanePoint start, PlanePoint end, ArcTurn turn) noexcept {
     return angle < 0 ? angle : angle - 2 * pi;
 }
 
-/// How far the circle strays from the ring that the words describe: at its middle, and where it is nearest to and farthest from the centre that they give.
+/// How far the circle strays from the ring that the words describe: at its middle, and where it is nearest to the centre that they give.
 double strays(PlanePoint start, PlanePoint shift, double angle, double radius, double wanted) noexcept {
     const auto off_at = [&](PlanePoint spoke) { return std::fabs(norm(shift + spoke) - wanted); };
     const double half = angle / 2;
@@ -31,11 +31,10 @@ double strays(PlanePoint start, PlanePoint shift, double angle, double radius, d
         {std::cos(half) * start.first - std::sin(half) * start.second, std::sin(half) * start.first + std::cos(half) * start.second});
     const double length = norm(shift);
     if (length == 0) return most;
-    for (const double sign : {1.0, -1.0}) {
-        const PlanePoint spoke = sign * radius / length * shift;
-        const double at = swept(start, spoke, angle > 0 ? ArcTurn::counter_clockwise : ArcTurn::clockwise);
-        if (std::fabs(at) < std::fabs(angle)) most = std::max(most, off_at(spoke));
-    }
+    // Across the shift, where the way to the given centre is shortest. (The farthest point lies opposite, is passed when this one is, and strays less: the moved circle is the smaller one.)
+    const PlanePoint spoke = -radius / length * shift;
+    const double at = swept(start, spoke, angle > 0 ? ArcTurn::counter_clockwise : ArcTurn::clockwise);
+    if (std::fabs(at) < std::fabs(angle)) most = std::max(most, off_at(spoke));
     return most;
 }
 

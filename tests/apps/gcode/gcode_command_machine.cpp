@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "apps/terminal/exit_code.hpp"
 #include "tests/apps/child.hpp"
@@ -57,6 +58,26 @@ TEST_F(GcodeCommand, CheckSaysWhereWhatAndWhatToDoAndLooksBehindTheFirstError) {
     EXPECT_THAT(check.text(), HasSubstr("bad.ngc:3:4: X1 is followed by a comma"));
     EXPECT_THAT(check.text(), HasSubstr("bad.ngc:4:1: G41 is not offered"));
     EXPECT_THAT(check.text(), Not(HasSubstr("G42"))) << "behind the end";
+}
+
+TEST_F(GcodeCommand, CheckForScripts) {
+    Child good({taktwerk, "gcode", "check", "--json", file("part.ngc", part), "--tool", "1=40.5", "--block-delete"});
+    EXPECT_EQ(good.wait(20s), exit_ok);
+    const auto said = nlohmann::json::parse(good.text());
+    EXPECT_TRUE(said.at("ok").get<bool>());
+    EXPECT_EQ(said.at("end"), "M30");
+    EXPECT_EQ(said.at("extents").at("X").at("most"), 40);
+    EXPECT_FALSE(said.at("extents").contains("A"));
+    EXPECT_EQ(said.at("lines_with_feed").at("length_mm"), 60);
+    EXPECT_EQ(said.at("tools"), nlohmann::json::array({1}));
+    EXPECT_NEAR(said.at("least_seconds").get<double>(), 6 + 1.570796 + 1, 1e-6);
+
+    Child bad({taktwerk, "gcode", "check", "--json", file("bad\xff.ngc", "G0 X1\nG1 X2\nG41\n")});
+    EXPECT_EQ(bad.wait(20s), exit_bad_file);
+    const auto errors = nlohmann::json::parse(bad.text()).at("errors");
+    ASSERT_EQ(errors.size(), 2u);
+    EXPECT_EQ(errors[0].at("code"), "gcode.no_feed");
+    EXPECT_EQ(errors[1].at("code"), "gcode.refused_code");
 }
 
 TEST_F(GcodeCommand, WhatIsNoErrorAndWorthALookIsSaid) {

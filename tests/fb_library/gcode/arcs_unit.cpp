@@ -151,6 +151,27 @@ TEST(GcodeArcs, AreInheritedAsMotionAndTheirWordsAreNot) {
     EXPECT_EQ(arc_fault("G0 X10\nG3 X0 Y10 I-10\nX-10 Y0"), "4:1 gcode.arc_nothing");
 }
 
+TEST(GcodeArcs, TurnAxesEvenlyAtTheFeedAlongTheArc) {
+    InterpreterOptions options;
+    options.rotary = InterpreterOptions::Rotary::offered;
+    const auto program = read_blocks("F600 G0 X10\nG3 I-10 A90", options);
+    ASSERT_EQ(program.wrong(), "");
+    const auto move = program.moves().back();
+    EXPECT_EQ(move.feed.kind, Feed::Kind::mm_per_s) << "a full circle ends where it began, and is no turning alone";
+    EXPECT_DOUBLE_EQ(move.feed.value, 10);
+    EXPECT_NEAR(point_of(move, 0.5)[3], 45, 1e-12);
+    EXPECT_NEAR(point_of(move, 0.5)[0], -10, 1e-12);
+}
+
+TEST(GcodeSummary, AClockwiseArcReachesNoFurtherThanItGoes) {
+    ProgramSummary summary;
+    for (const auto& item : read_blocks("F600 G0 X10\nG2 X0 Y-10 I-10").items) summary.add(item);
+    EXPECT_NEAR(summary.extents()[0].least, 0, 1e-12);
+    EXPECT_NEAR(summary.extents()[0].most, 10, 1e-12);
+    EXPECT_NEAR(summary.extents()[1].least, -10, 1e-12);
+    EXPECT_NEAR(summary.extents()[1].most, 0, 1e-12);
+}
+
 TEST(GcodeSummary, ArcsReachBeyondTheirEnds) {
     ProgramSummary summary;
     for (const auto& item : read_blocks("F600 G0 X10\nG3 X0 Y-10 I-10\nG0 Z5\nG1 X3 Y-6\nG4 P2").items) summary.add(item);

@@ -228,6 +228,13 @@ TEST(GcodeFrames, ToolLengthsMoveNothingByThemselves) {
     EXPECT_EQ(fault_of("G43", options), "1:1 gcode.no_tool");
 }
 
+TEST(GcodeFrames, WhereTheMachineStandsIsCalledAsSaidWhateverElseIsInForce) {
+    InterpreterOptions options;
+    options.tools = {{1, at(0, 0, 100)}}, options.offsets[0] = at(0, 0, 7);
+    EXPECT_EQ(end_of("G43 H1 G0 Z0\nG92 Z50\nZ51", options), at(0, 0, 108)) << "107 is called 50";
+    EXPECT_EQ(end_of("G43 H1 G0 Z0\nG92 Z50\nG10 L20 P1 Z3\nZ4", options), at(0, 0, 108)) << "107 is called 3";
+}
+
 TEST(GcodeReference, G28GoesByThePointGivenInTheDistanceModeInForce) {
     InterpreterOptions options;
     options.reference = at(1, 2, 3), options.second_reference = at(7, 8, 9);
@@ -317,6 +324,11 @@ TEST(GcodeRun, AFaultLeavesNothingOfItsBlock) {
     const auto program = read_blocks("G0 X1\nT5 M6 G1 X2");
     EXPECT_EQ(program.wrong(), "2:7 gcode.no_feed");
     EXPECT_EQ(program.items.size(), 1u) << "no tool change either";
+    TextInMemory text("G0 X1\nT5 M6 G1 X2\nM2\n");
+    Interpreter asked_again(text, {});
+    ProgramItem item;
+    EXPECT_EQ(asked_again.next(item), Interpreter::Step::item);
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(asked_again.next(item), Interpreter::Step::fault) << "for ever";
 }
 
 TEST(GcodeRun, MovesThatLeadNowhereAreCounted) {

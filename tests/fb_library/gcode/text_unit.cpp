@@ -27,6 +27,9 @@ TEST(GcodeNumbers, HaveASignAPointAndDigitsAsTheyLike) {
     EXPECT_EQ(x_of("X0.1"), 0.1) << "the nearest double";
     EXPECT_EQ(x_of("X12345.678"), 12345.678);
     EXPECT_EQ(x_of("X0.1000000000000000055511151231257827"), 0.1) << "34 digits";
+    EXPECT_EQ(x_of("X74.797785325233453"), 74.797785325233453) << "17 digits";
+    EXPECT_EQ(x_of("X40.551058552328595"), 40.551058552328595) << "17 digits";
+    EXPECT_EQ(x_of("X93.420029502170442"), 93.420029502170442) << "17 digits";
     EXPECT_EQ(x_of("X00000000000000000000000000000000001.5"), 1.5);
 }
 
@@ -106,6 +109,7 @@ TEST(GcodeLines, AreAtMost256BytesLong) {
     const std::string head = "G0 X1 (";
     const std::string fits = head + std::string(256 - head.size() - 1, 'c') + ")";
     EXPECT_EQ(read_program(fits + "\r\nM2").wrong(), "");
+    for (const std::size_t piece : {1, 256, 257, 258}) EXPECT_EQ(read_program(fits + "\r\nM2", {}, piece).wrong(), "") << piece;
     EXPECT_EQ(read_program(fits + " \nM2").wrong(), "1:257 gcode.line_too_long");
     EXPECT_EQ(read_program("M2 ;" + std::string(300, 'c')).wrong(), "1:257 gcode.line_too_long") << "the last line";
     EXPECT_EQ(read_program("\n;" + std::string(100'000, 'c') + "\nM2").wrong(), "2:257 gcode.line_too_long") << "longer than any buffer";
