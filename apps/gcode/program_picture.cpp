@@ -104,11 +104,11 @@ void ProgramPath::add(const gcode::Move& move) {
         ++points_, pending_ = false, end_ = from;
     }
     if (move.kind == gcode::Move::Kind::arc) {
-        // As many chords as keep within the finest detail of the circle, and at least twelve a turn.
+        // As many chords as look like the circle, and at least twelve a turn.
         const auto first = (move.normal + 1u) % 3, second = (move.normal + 2u) % 3;
         const double radius = std::hypot(move.from[first] - move.centre[first], move.from[second] - move.centre[second]);
-        const double step =
-            finest_ < radius ? std::clamp(2 * std::acos(1 - finest_ / radius), 0.005, std::numbers::pi / 6) : std::numbers::pi / 6;
+        const double sagitta = finest_ / 10;
+        const double step = sagitta < radius / 30 ? std::max(2 * std::acos(1 - sagitta / radius), 0.005) : std::numbers::pi / 6;
         const auto chords = static_cast<std::size_t>(std::ceil(std::fabs(move.angle) / step));
         for (std::size_t i = 1; i < chords && !cut_off_; ++i)
             put(position_of(gcode::point_of(move, static_cast<double>(i) / static_cast<double>(chords))), false);
