@@ -170,6 +170,10 @@ TEST(GcodeSummary, AClockwiseArcReachesNoFurtherThanItGoes) {
     EXPECT_NEAR(summary.extents()[0].most, 10, 1e-12);
     EXPECT_NEAR(summary.extents()[1].least, -10, 1e-12);
     EXPECT_NEAR(summary.extents()[1].most, 0, 1e-12);
+    ProgramSummary three_quarters;
+    for (const auto& item : read_blocks("F600 G0 X10\nG2 X0 Y10 I-10").items) three_quarters.add(item);
+    EXPECT_NEAR(three_quarters.extents()[0].least, -10, 1e-12);
+    EXPECT_NEAR(three_quarters.extents()[1].least, -10, 1e-12);
 }
 
 TEST(GcodeSummary, ArcsReachBeyondTheirEnds) {
