@@ -50,9 +50,8 @@ int check(const CheckWords& options) {
     if (!program) {
         std::vector<Error> errors{program.error()};
         const auto line = line_of(program.error(), name);
-        const auto again = ProgramFile::open(path);
-        if (line > 0 && again)
-            for (auto& error : word_errors_behind(**again, *how, line, most_errors, name)) errors.push_back(std::move(error));
+        if (line == 0 || !(*file)->again()) return tell(errors, 0, options.json);
+        for (auto& error : word_errors_behind(**file, *how, line, most_errors, name)) errors.push_back(std::move(error));
         return tell(errors, line, options.json);
     }
     if (options.json) {

@@ -23,16 +23,14 @@ struct PictureOptions {
     std::string output, title;
 };
 
-/// Every move of the program into `take`. Errors: what is wrong with it, and gcode.open.
+/// Every item of the program into `take`. Errors: what is wrong with it.
 template <class Take>
-Result<void> for_each_item(const std::string& path, const gcode::InterpreterOptions& how, Take take) {
-    const auto file = ProgramFile::open(path);
-    if (!file) return file.error();
-    gcode::Interpreter program(**file, how);
+Result<void> for_each_item(ProgramFile& file, const gcode::InterpreterOptions& how, const std::string& name, Take take) {
+    gcode::Interpreter program(file, how);
     gcode::ProgramItem item;
     auto step = program.next(item);
     for (; step == gcode::Interpreter::Step::item; step = program.next(item)) take(item);
-    if (step == gcode::Interpreter::Step::fault) return gcode::fault_error(program.fault(), shown_name(path));
+    if (step == gcode::Interpreter::Step::fault) return gcode::fault_error(program.fault(), name);
     return {};
 }
 
@@ -44,15 +42,20 @@ int picture(const PictureOptions& options) {
     const auto how = interpreter_options(options.program);
     if (!how) return fail(how.error(), exit_usage);
     const auto& path = options.program.file;
+    const auto opened = ProgramFile::open(path);
+    if (!opened) return fail(opened.error());
+    const auto name = shown_name(path);
     // Twice: the first time says how large it is, and so how fine a line has to be.
     gcode::ProgramSummary summary;
-    if (const auto read = for_each_item(path, *how, [&](const gcode::ProgramItem& item) { summary.add(item); }); !read)
+    if (const auto read = for_each_item(**opened, *how, name, [&](const gcode::ProgramItem& item) { summary.add(item); }); !read)
         return fail(read.error());
+    if (!(*opened)->again())
+        return fail({"gcode.pipe", name, "a picture reads its program twice, and this can be read once only", "Put it into a file."});
     double size = 0;
     for (std::size_t axis = 0; axis < gcode::linear_axes; ++axis)
         size = std::max(size, summary.extents()[axis].most - summary.extents()[axis].least);
     ProgramPath drawn(size);
-    const auto again = for_each_item(path, *how, [&](const gcode::ProgramItem& item) {
+    const auto again = for_each_item(**opened, *how, name, [&](const gcode::ProgramItem& item) {
         if (item.kind == gcode::ProgramItem::Kind::move) drawn.add(item.move);
     });
     if (!again) return fail(again.error());

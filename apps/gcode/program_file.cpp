@@ -81,6 +81,8 @@ gcode::TextPiece ProgramFile::read(std::span<char> into) noexcept {
     return {std::ferror(file_) != 0 ? gcode::TextState::failed : gcode::TextState::end, 0};
 }
 
+bool ProgramFile::again() noexcept { return std::fseek(file_, 0, SEEK_SET) == 0; }
+
 void add_program_options(CLI::App& sub, ProgramOptions& options) {
     sub.add_option("FILE", options.file, "the program")->required();
     sub.add_option("--tool", options.tools,

@@ -21,6 +21,8 @@ public:
     [[nodiscard]] static Result<std::unique_ptr<ProgramFile>> open(const std::string& path);
     ~ProgramFile() override;
     gcode::TextPiece read(std::span<char> into) noexcept override;
+    /// To the beginning. False: it can be read once only (a pipe).
+    [[nodiscard]] bool again() noexcept;
 
 private:
     explicit ProgramFile(std::FILE* file) : file_(file) {}

@@ -1,5 +1,7 @@
 // `taktwerk gcode` as its user meets it: the built command on files.
 
+#include <sys/stat.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -135,6 +137,18 @@ TEST_F(GcodeCommand, PlotCarriesOutNothingThatStandsInAProgramOrItsName) {
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(".")) ++files;
     EXPECT_EQ(files, 2u) << "the program and its picture";
     std::filesystem::current_path(TAKTWERK_SOURCE_DIR);
+}
+
+// A pipe is read once: opened again it would wait for ever.
+TEST_F(GcodeCommand, APipeIsAProgramToo) {
+    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+    Child check({"bash", "-c", "printf 'G1 X1\\nM2\\n' > \"$1\" & exec \"$0\" gcode check \"$1\"", taktwerk, path("pipe")});
+    EXPECT_EQ(check.wait(20s), exit_bad_file);
+    EXPECT_THAT(check.text(), HasSubstr("pipe:1:1: G1 has no feed"));
+    EXPECT_THAT(check.text(), Not(HasSubstr("behind line"))) << "nothing was looked at";
+    Child plot({"bash", "-c", "printf 'G0 X1\\nM2\\n' > \"$1\" & exec \"$0\" gcode plot \"$1\"", taktwerk, path("pipe")});
+    EXPECT_EQ(plot.wait(20s), exit_bad_file);
+    EXPECT_THAT(plot.text(), HasSubstr("can be read once only"));
 }
 
 TEST_F(GcodeCommand, NothingOfAFileReachesTheTerminalAsItIs) {
