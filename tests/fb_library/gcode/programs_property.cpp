@@ -172,6 +172,42 @@ TEST(GcodeProgram, WrittenAndReadAgainHasTheSameMoves) {
     }
 }
 
+// Arcs are true circles that end where they say, and the extents of a program are those of its points, taken densely.
+TEST(GcodeProgram, ArcsAreCirclesAndExtentsHoldAllTheirPoints) {
+    for (std::size_t seed = 0; seed < property_cases(60); ++seed) {
+        Writer written(static_cast<std::uint32_t>(seed) + 3'000'000);
+        written.program(20);
+        ProgramSummary summary;
+        const auto moves = read_program(written.text).moves();
+        std::array<double, linear_axes> least{}, most{};
+        double length = 0;
+        for (const auto& item : read_program(written.text).items) summary.add(item);
+        for (const auto& move : moves) {
+            const auto first = (move.normal + 1u) % 3, second = (move.normal + 2u) % 3;
+            const double radius = std::hypot(move.from[first] - move.centre[first], move.from[second] - move.centre[second]);
+            constexpr int points = 4000;
+            AxisValues before = move.from;
+            for (int i = 0; i <= points; ++i) {
+                const auto at = point_of(move, i == points ? 1 - 1e-13 : static_cast<double>(i) / points);
+                if (move.kind == Move::Kind::arc) {
+                    ASSERT_NEAR(std::hypot(at[first] - move.centre[first], at[second] - move.centre[second]), radius, 1e-9);
+                }
+                for (std::size_t axis = 0; axis < linear_axes; ++axis)
+                    least[axis] = std::min(least[axis], at[axis]), most[axis] = std::max(most[axis], at[axis]);
+                length += std::hypot(at[0] - before[0], at[1] - before[1], at[2] - before[2]);
+                before = at;
+            }
+            for (std::size_t axis = 0; axis < linear_axes; ++axis)
+                ASSERT_NEAR(before[axis], move.to[axis], 1e-7) << "it ends where it says";
+        }
+        ASSERT_NEAR(summary.rapids().length_mm + summary.lines().length_mm + summary.arcs().length_mm, length, 1e-4 * length);
+        for (std::size_t axis = 0; axis < linear_axes; ++axis) {
+            ASSERT_NEAR(summary.extents()[axis].least, least[axis], 1e-3) << "seed " << seed;
+            ASSERT_NEAR(summary.extents()[axis].most, most[axis], 1e-3) << "seed " << seed;
+        }
+    }
+}
+
 /// Counts how often it is asked.
 class CountedText final : public TextSource {
 public:
