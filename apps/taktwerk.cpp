@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
     add_bus(app, action);
     add_drive(app, action);
     add_plot(app, action);
+    add_gcode(app, action);
     add_sim(app, action);
     add_simulate(app, action);
     add_esi(app, action);

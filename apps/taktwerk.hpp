@@ -24,6 +24,7 @@ void add_bus(CLI::App& app, Action& action);    ///< scan, state, pdo, sdo, dc, 
 void add_drive(CLI::App& app, Action& action);  ///< identify, params, get, set, save, restore, diff, alarms, reset
 void add_esi(CLI::App& app, Action& action);    ///< list, show, import
 void add_plot(CLI::App& app, Action& action);
+void add_gcode(CLI::App& app, Action& action);  ///< check, plot
 /// Measures an axis while it is held.
 void add_measure(CLI::App& app, Action& action);
 void add_hmi(CLI::App& app, Action& action);     ///< the page's server

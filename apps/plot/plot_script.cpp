@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/plot/gnuplot.hpp"
 #include "apps/plot/plot_data.hpp"
 #include "axes/words/types.hpp"
 #include "core/nearest_name.hpp"
@@ -76,20 +77,6 @@ std::vector<Panel> panels_of(const AxisTrace& axis, bool following_error) {
     return out;
 }
 
-/// For gnuplot's single-quoted strings: the only ones in which it carries out nothing (backticks are a shell command in double quotes) and
-/// knows no escapes but the doubled quote.
-std::string in_quotes(std::string_view text) {
-    std::string out = "'";
-    for (const char c : text) {
-        if (c == '\'') out += '\'';
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-    return out + '\'';
-}
-
-/// A file, whatever its name: "|name" would be a command to write to.
-std::string file_in_quotes(const std::string& path) { return in_quotes(path.starts_with('/') ? path : "./" + path); }
-
 class Script {
 public:
     Script(const Trace& trace, Window rows, double height) : trace_(trace), rows_(rows), height_(height) {
@@ -114,8 +101,8 @@ public:
     }
 
     void label(double px, double py, std::string_view what, std::string_view align, int size, std::string_view colour) {
-        line("set label {} at screen {:.6f}, screen {:.6f} {} font \",{}\" tc rgb \"{}\" noenhanced front", in_quotes(what), x(px), y(py),
-             align, size, colour);
+        line("set label {} at screen {:.6f}, screen {:.6f} {} font \",{}\" tc rgb \"{}\" noenhanced front", in_gnuplot_quotes(what), x(px),
+             y(py), align, size, colour);
     }
 
     void shade(const std::vector<Span>& where, int value, const char* colour) {
@@ -134,7 +121,8 @@ public:
         std::string list;
         for (const double at : t.at)
             if (at >= from_ - 1e-9 && at <= to_ + 1e-9)
-                list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", in_quotes(with_numbers ? tick_text(at, t.step) : ""), at);
+                list +=
+                    fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", in_gnuplot_quotes(with_numbers ? tick_text(at, t.step) : ""), at);
         line("set xtics ({}) scale 0.3 nomirror offset 0,0.35", list);
     }
 
@@ -150,8 +138,8 @@ public:
             const auto name = state_name(span.value);
             const double pixels = (span.to - span.from) / (to_ - from_) * plot_width;
             if (pixels > 7.0 * static_cast<double>(name.size()) + 8)
-                line("set label {} at first {:.6f}, graph 0.47 center font \",9\" tc rgb \"#303030\" noenhanced front", in_quotes(name),
-                     (span.from + span.to) / 2);
+                line("set label {} at first {:.6f}, graph 0.47 center font \",9\" tc rgb \"#303030\" noenhanced front",
+                     in_gnuplot_quotes(name), (span.from + span.to) / 2);
         }
         line("plot NaN notitle");
     }
@@ -182,12 +170,13 @@ public:
             line("EOD");
             plots += fmt::format("{}{} using 1:2 with {} lw {} lc rgb \"{}\" {} {}", plots.empty() ? "" : ", ", block,
                                  curve.commanded ? "steps" : "lines", curve.line, curve.colour, curve.commanded ? "dt (4,3)" : "",
-                                 *curve.title ? "title " + in_quotes(curve.title) : std::string("notitle"));
+                                 *curve.title ? "title " + in_gnuplot_quotes(curve.title) : std::string("notitle"));
         }
         if (axis) hand_overs(*axis);
         const auto t = ticks(low, high, panel.height > 100 ? 6 : 5);
         std::string list;
-        for (const double at : t.at) list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", in_quotes(tick_text(at, t.step)), at);
+        for (const double at : t.at)
+            list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", in_gnuplot_quotes(tick_text(at, t.step)), at);
         line("set yrange [{:.9g}:{:.9g}]; set ytics ({}) scale 0.3 nomirror; set grid", t.low, t.high, list);
         time_tics(last);
         label(12, top + panel.height / 2 - 7, panel.quantity, "left", 10, "#202020");
@@ -362,7 +351,7 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
     Script script{trace, rows, height};
     const double cycle_ms = (script.to() - script.from()) / static_cast<double>(rows.last - rows.first - 1) * 1e3;
     script.line("set terminal svg size {:.0f},{:.0f} dynamic enhanced font \"DejaVu Sans,10\" background rgb \"#ffffff\"", width, height);
-    script.line("set output {}", file_in_quotes(request.output));
+    script.line("set output {}", gnuplot_file(request.output));
     script.line(
         "set encoding utf8; set multiplot; set border 3 lc rgb \"#909090\"; set grid lc rgb \"#e4e4e4\" lt 1 lw 0.7; set tics font \",9\" "
         "tc rgb \"#404040\"");

@@ -1,0 +1,15 @@
+// taktwerk gcode: programs of moves, without a machine.
+
+#include "apps/gcode/gcode.hpp"
+
+namespace taktwerk::apps {
+
+void add_gcode(CLI::App& app, Action& action) {
+    auto* gcode =
+        app.add_subcommand("gcode", "G-code programs, without a machine: what is wrong with one, what is in it, what it looks like");
+    gcode->require_subcommand(1);
+    add_gcode_check(*gcode, action);
+    add_gcode_plot(*gcode, action);
+}
+
+}  // namespace taktwerk::apps
