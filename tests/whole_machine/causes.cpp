@@ -33,7 +33,6 @@ constexpr auto bus_lost = all_of(not_exchanged, stopped);
 constexpr auto slaves_lost =
     all_of(bus_lost, std::array{C{"slave_lost"}, C{"cable_broken"}, C{"slaves_missing"}, C{"station_address_lost"}, C{"drive_power_lost"},
                                 C{"cut_off_from_reference"}, C{"working_counter_wrong"}, C{"reference_lost"}, C{"cable_loses_link"},
-                                C{"drive_mode_mismatch"},  // that it was in when it was lost
                                 C{"foreign_command"}});  // one that is back before it was missed is in INIT: nobody knows who put it there
 constexpr auto port_lost = all_of(slaves_lost, std::array{C{"link_down"}});
 constexpr auto counters = all_of(bus_lost, std::array{C{"working_counter_wrong"}});
