@@ -82,14 +82,14 @@ private:
     }
     /// The edge of the switch is where `home_from`..`home_to` begins or ends; the axis has found one of both at its latch velocity, within some cycles.
     std::string compare_with_mechanics(const runtime::AxisBinding& binding, const axes::AxisView& view, const axes::sim::Cia402Axis& drive,
-                                       double counts, Duration stalled) {
+                                       double counts, Duration) {
         const auto& homing = binding.axis.homing;
         const auto& simulation = binding.simulation;
         if (!simulation.home_from || !simulation.home_to || homing.kind == axes::HomingKind::set_here || view.modulo > 0) return {};
         ++references_;
         const double off = view.actual_position - drive.plant().position() / counts - homing.offset;
         const double near = std::min(std::abs(off + *simulation.home_from), std::abs(off + *simulation.home_to));
-        const double most = 0.05 + 0.01 * homing.latch_velocity + homing.search_velocity * to_seconds(stalled);
+        const double most = 0.05 + 0.01 * homing.latch_velocity;
         if (near <= most) return {};
         return fmt::format("axis {} stands {} u from the edge of its home switch where it says 0 (at most {}); ", binding.axis.name, near,
                            most);
