@@ -166,7 +166,6 @@ Duration Troublemaker::begin_beside(Trouble trouble, const std::string& at) {
 
 /// The computer does nothing for so long; the world goes on.
 void Troublemaker::stall(Duration length) {
-    rig_.stalled(length);
     rig_.m.clock.advance(length);
     rig_.m.world.network().advance(rig_.now());
     rig_.m.world.apply_events(rig_.now());
