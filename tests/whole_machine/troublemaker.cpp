@@ -66,11 +66,12 @@ std::string Troublemaker::choose_place(Trouble trouble) {
     return {};
 }
 
-void Troublemaker::strike(Trouble trouble) {
+Blow Troublemaker::strike(Trouble trouble) {
     auto at = choose_place(trouble);
     const auto happening = rig_.begins(trouble, at);
     const Duration length = begin(trouble, at);
     under_way_.push_back({trouble, std::move(at), rig_.now() + length, happening});
+    return {length, trouble == Trouble::answers_late ? rig_.m.world.transport().faults.delay : Duration{}};
 }
 
 Duration Troublemaker::begin(Trouble trouble, const std::string& at) {
