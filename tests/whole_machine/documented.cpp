@@ -20,7 +20,11 @@ constexpr std::array<Documented, trouble_names.size()> table{{
     {stop_machine, power_off, "stops: `frames_lost`; drives that starve stop by their watchdogs", by_reset},
     {none, power_off, "goes on, or stops: `frames_lost`", by_reset},
     {stop_machine, power_off, "stops: `working_counter_wrong`", "reset, then power or start"},
-    {none, power_off, "stops: `slave_lost` names it, or what went dark behind it; too short to be missed: goes on", by_reset},
+    {none, power_off,
+     "stops: `slave_lost` names it; where others went dark behind it `cable_broken`, or `frames_lost`; back before it was missed: "
+     "`foreign_command` or "
+     "`slave_left_op`, or goes on",
+     by_reset},
     {none, power_off, "stops: `slave_lost`, `cable_broken` or `frames_lost`", by_reset},
     {stop_machine, power_off, "stops: `link_down`", by_reset},
     {stop_machine, power_off, "stops: `foreign_command` or `slave_left_op`", by_reset},
@@ -34,7 +38,8 @@ constexpr std::array<Documented, trouble_names.size()> table{{
      "lost steps, "
      "and nobody knows",
      "reset, then power or start"},
-    {none, stop_machine, "that axis stops: `drive_silent`, and its watchdog output falls", "by itself, then reset"},
+    {none, stop_machine, "that axis stops: `axis_feedback_lost`, and its watchdog output falls; from 5 s on: `drive_silent`",
+     "by itself, then reset"},
     {none, stop_machine, "goes on, or that axis stops: `axis_feedback_lost`", "by itself, then reset"},
     {none, stop_machine, "goes on, or that axis stops: `axis_feedback_lost`", "by itself, then reset"},
     {none, stop_machine, "that axis stops: `drive_fault`", "reset, then power or start"},
