@@ -1,7 +1,6 @@
 #include "tests/whole_machine/whole_run.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "tests/whole_machine/hands.hpp"
 #include "tests/whole_machine/recovery.hpp"
@@ -114,7 +113,8 @@ private:
     void strike_all() {
         for (const auto trouble : result_.troubles) {
             const auto blow = troubles_.strike(trouble);
-            if (result_.length == Duration{}) std::tie(result_.length, result_.delay) = std::tie(blow.length, blow.delay);
+            if (trouble == result_.troubles.front()) result_.length = blow.length;
+            result_.delay = std::max(result_.delay, blow.delay);
             run(drawn(300ms));
         }
     }
@@ -144,7 +144,7 @@ private:
             strike_all();
             if (result_.moment == Moment::recovering) {
                 hands_.reset_all();
-                (void)troubles_.strike(result_.troubles.front());
+                result_.delay = std::max(result_.delay, troubles_.strike(result_.troubles.front()).delay);
             }
         }
         for (const auto end = rig_.now() + 20s; !troubles_.over() && rig_.now() < end;) live(10ms, by_hand);

@@ -32,7 +32,7 @@ struct WholeRun {
     std::string machine;
     Moment moment = Moment::running;
     std::vector<Trouble> troubles;
-    Duration length{}, delay{};                 ///< of the first of them, where it has such
+    Duration length{}, delay{};                 ///< of the first of them; of answers: the longest. 0: it has none
     Duration cycle{};                           ///< of the machine
     bool frames_supervised = false;             ///< one of its drives falls when a few frames in a row do not come
     Reaction reaction = Reaction::none;         ///< the strongest of the alarms that were raised from the first trouble on
