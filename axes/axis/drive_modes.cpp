@@ -133,11 +133,16 @@ ModeStep DriveModes::leave(bool confirmed, bool late) noexcept {
         modes_.go(ModePhase::entering);
         return ModeStep::again;
     }
-    if (confirmed) {  // the set-point goes on from the last one the drive was given
+    if (confirmed) {
         modes_.end_profile();
-        if (!modes_.motor_leads) return ModeStep::free;
-        if (motion_.goal.kind != Goal::Kind::rest && motion_.goal.kind != Goal::Kind::given) motion_.goal_pending = true;
-        else if (!body_.begin_pending && !motion_.goal_pending) stop_or_stand();
+        go_on_from_motor();
+        return ModeStep::free;
+    }
+    // Who is not heard refuses nothing: what keeps it silent says so itself, and it has its time when it answers again. Nobody leads meanwhile.
+    if (!measured_.online()) {
+        go_on_from_motor();
+        modes_.motor_leads = false;
+        modes_.since = body_.now;
         return ModeStep::free;
     }
     lead_.follow();
@@ -232,6 +237,13 @@ ModeStep DriveModes::change_mode(bool confirmed, bool late) noexcept {
     modes_.go(ModePhase::leaving);
     conduct_.stop_on_own_account(false);
     return ModeStep::made;
+}
+
+/// Nothing follows the motor any more: the set-point goes on from the last one the drive was given.
+void DriveModes::go_on_from_motor() noexcept {
+    if (!modes_.motor_leads) return;
+    if (motion_.goal.kind != Goal::Kind::rest && motion_.goal.kind != Goal::Kind::given) motion_.goal_pending = true;
+    else if (!body_.begin_pending && !motion_.goal_pending) stop_or_stand();
 }
 
 /// Out of torque with nothing to do: the motor may still turn.

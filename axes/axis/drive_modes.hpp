@@ -57,6 +57,7 @@ private:
     [[nodiscard]] ModeStep enter_torque(bool confirmed, bool late) noexcept;
     [[nodiscard]] ModeStep run_torque(Duration period) noexcept;
     [[nodiscard]] ModeStep change_mode(bool confirmed, bool late) noexcept;
+    void go_on_from_motor() noexcept;
     void stop_or_stand() noexcept;
 
     AxisBody& body_;

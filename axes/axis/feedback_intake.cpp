@@ -83,6 +83,8 @@ void FeedbackIntake::watch_drive() noexcept {
     }
 
     if (measured_.faulted()) {
+        // Its motor is free, or was stopped by itself: nobody counts where one without an encoder comes to rest (SE-808X 2.4, 4.3: 605Eh = 0).
+        if (!body_.port.capabilities().motor_has_encoder) body_.homed = false;
         if (!tell_found()) announce(AxisAlarm::drive_fault);
     } else if (asked && measured_.feedback.setup_refused) conduct_.fail(AxisAlarm::drive_setup_refused);
     else if (asked && measured_.feedback.power == PowerState::unknown)

@@ -7,6 +7,7 @@
 #include "axes/axis/axis_motion.hpp"
 #include "axes/axis/following_error.hpp"
 #include "axes/axis/measured.hpp"
+#include "axes/axis/stopping_way.hpp"
 
 namespace taktwerk::axes {
 
@@ -14,7 +15,7 @@ class FollowingWatch {
 public:
     /// u: set-point in effect at the latch, minus actual.
     [[nodiscard]] double error() const noexcept { return error_; }
-    /// u: what error() may be at the set velocity of that instant.
+    /// u: what error() may be at the set velocity of that instant, and behind a stop that the drive made by itself.
     [[nodiscard]] double window() const noexcept { return window_; }
     [[nodiscard]] bool in_position(const AxisBody& body) const noexcept {
         return in_window_ && body.now - in_window_since_ >= body.config.windows.in_position_time;
@@ -25,6 +26,7 @@ public:
     void rest() noexcept {
         error_ = 0;
         timer_.clear();
+        stopping_.clear();
         in_window_ = false;
     }
     void record(Instant effective, std::int64_t counts) noexcept { history_.record(effective, counts); }
@@ -33,11 +35,15 @@ public:
     void begin_anew() noexcept {
         error_ = 0;
         timer_.clear();
+        stopping_.clear();
         history_.clear();
     }
 
 private:
+    [[nodiscard]] double beyond_by_stopping(const Measured& measured, const AxisMotion& motion) noexcept;
+
     FollowingErrorTimer timer_;
+    StoppingWay stopping_;  // of a drive on a slow line
     double error_ = 0;
     double window_ = std::numeric_limits<double>::infinity();  // nothing is watched yet
     Instant in_window_since_{};
@@ -58,6 +64,7 @@ private:
     // The velocity of the same instant as the error: an axis that has just stopped is still behind.
     if (allowed.per_velocity > Duration::zero())
         window_ += to_seconds(allowed.per_velocity) * std::abs(history_.velocity_at(feedback.latched) / body.units.counts_per_unit());
+    if (body.slow_line) window_ += beyond_by_stopping(measured, motion);
     const bool beyond = std::abs(error_) > window_;
     lag_forgiven_ = pressed || (lag_forgiven_ && beyond);
     bool too_long = false;

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/alarm.hpp"
 #include "tests/whole_machine/whole_run.hpp"
@@ -18,6 +19,8 @@ struct Documented {
 };
 
 [[nodiscard]] const Documented& documented(Trouble trouble) noexcept;
+/// The alarms that it names: words in back-quotes.
+[[nodiscard]] std::vector<std::string> alarms_named(std::string_view text);
 /// What in a run is not as documented; empty: nothing.
 [[nodiscard]] std::string judged(const WholeRun& run);
 

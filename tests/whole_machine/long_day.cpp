@@ -63,7 +63,7 @@ void LongDay::work(Duration time) {
     for (int i = 0; i < count; ++i) {
         auto trouble = static_cast<Trouble>(below(trouble_names.size()));
         if (!troubles_.possible(trouble)) continue;
-        troubles_.strike(trouble);
+        (void)troubles_.strike(trouble);
         ++struck_;
     }
     for (const auto end = rig_.now() + 10s; !troubles_.over() && rig_.now() < end;) one_cycle();

@@ -59,6 +59,7 @@ bool power_and_move(Rig& rig) {
             if (is_moved_by_hand(rig, i) && !(rig.m.axis(i).powered && rig.m.axis(i).state == AxisState::Standstill)) return false;
         return true;
     };
+    (void)rig.submit(override_velocity, 0xFFFF, false, 1);  // somebody may have turned it down to nothing
     for (std::uint16_t i = 0; i < layout.axes.size(); ++i)
         if (is_moved_by_hand(rig, i)) (void)rig.submit(power, i, true);
     // What a program held goes off and comes back: the wish is the operator's from here on.

@@ -9,6 +9,34 @@ namespace {
 
 constexpr std::uint64_t patience_for_answers = 50;  // cycles
 
+/// What it may be the reason of.
+std::optional<Deed> deed_of(const runtime::OperatorCommand& command) {
+    using enum runtime::OperatorAction;
+    switch (command.action) {
+        case jog: return Deed::jog;
+        case home: return Deed::home;
+        case move_absolute: return Deed::move;
+        case power: return command.flag ? Deed::power_on : Deed::power_off;
+        case stop: return Deed::stop;
+        case reset: return Deed::reset;
+        case set_mode: return Deed::change_mode;
+        case program_start: return Deed::start_program;
+        case program_stop:
+        case program_reset: return Deed::stop_program;
+        case force: return Deed::force;
+        default: return std::nullopt;
+    }
+}
+bool is_of_an_axis(std::optional<Deed> deed) { return deed && *deed < Deed::change_mode; }
+
+/// Stops the field or the rotor of a motor that turns.
+bool shakes(const std::variant<Trouble, Deed>& what) {
+    const auto* trouble = std::get_if<Trouble>(&what);
+    if (trouble == nullptr) return false;
+    const auto source = source_of(*trouble);
+    return source == Source::bus || source == Source::drives || source == Source::host;
+}
+
 }  // namespace
 
 std::string Happening::text() const {
@@ -47,6 +75,10 @@ std::size_t Rig::begins(std::variant<Trouble, Deed> what, std::string at) {
         tell(happenings_.back().text());
         ++done[std::string(name(*trouble))];
     }
+    if (shakes(what)) {
+        ++shaking_;
+        places_.shaken();
+    }
     return forgotten_ + happenings_.size() - 1;
 }
 
@@ -54,6 +86,7 @@ void Rig::ended(std::size_t happening) {
     auto& one = happenings_[happening - forgotten_];
     if (one.to) return;
     one.to = now();
+    if (shakes(one.what)) --shaking_;
     if (std::holds_alternative<Trouble>(one.what)) tell("over: " + one.text());
 }
 
@@ -64,29 +97,14 @@ std::uint64_t Rig::submit(runtime::OperatorCommand command) {
     command.after = m.machine->levels_raised();
     const auto& axes = m.machine->layout().axes;
     const std::string at = command.axis < axes.size() ? axes[command.axis].name : "";
-    switch (command.action) {
-        case jog: happens(Deed::jog, at); break;
-        case home:
-            happens(Deed::home, at);
-            places_.asked_for_reference(command.axis);
-            break;
-        case move_absolute: happens(Deed::move, at); break;
-        case power: happens(command.flag ? Deed::power_on : Deed::power_off, at); break;
-        case stop: happens(Deed::stop, at); break;
-        case reset: happens(Deed::reset, at); break;
-        case set_mode: happens(Deed::change_mode); break;
-        case program_start: happens(Deed::start_program); break;
-        case program_stop:
-        case program_reset: happens(Deed::stop_program); break;
-        case force: happens(Deed::force); break;
-        default: break;
-    }
+    Given given{.cycle = cycles_, .deed = deed_of(command), .axis = command.axis, .asks_for_reference = command.action == home};
+    if (is_of_an_axis(given.deed)) given.at = at;
     ++commands;
     if (!m.machine->submit(command)) {
         ++answers;  // queue_full, to its sender
         return 0;
     }
-    unanswered_[sequence_] = cycles_;
+    unanswered_[sequence_] = std::move(given);
     return sequence_;
 }
 
@@ -113,6 +131,7 @@ void Rig::each_cycle() {
     if (snapshot == nullptr) return;
     look_at_answers();
     look_at_alarms(*snapshot);
+    if (shaking_ > 0) places_.shaken();
     if (auto wrong = places_.look(m); !wrong.empty()) problem(std::move(wrong));
     history_->look(*snapshot, now(), now().time_since_epoch() / 1us);
     history_->work(now());
@@ -129,13 +148,23 @@ void Rig::look_at_answers() {
         if (answer->answer != runtime::Answer::accepted)
             tell(fmt::format("command {} refused: {} {}", answer->sequence, static_cast<int>(answer->answer),
                              static_cast<int>(answer->error)));
-        if (unanswered_.erase(answer->sequence) == 0)
+        const auto given = unanswered_.find(answer->sequence);
+        if (given == unanswered_.end()) {
             problem(fmt::format("command {} is answered twice, or was never given", answer->sequence));
+            continue;
+        }
+        if (answer->answer == runtime::Answer::accepted) accepted(given->second);
+        unanswered_.erase(given);
     }
-    if (!unanswered_.empty() && cycles_ - unanswered_.begin()->second > patience_for_answers) {
+    if (!unanswered_.empty() && cycles_ - unanswered_.begin()->second.cycle > patience_for_answers) {
         problem(fmt::format("command {} has no answer", unanswered_.begin()->first));
         unanswered_.clear();
     }
+}
+
+void Rig::accepted(const Given& given) {
+    if (given.deed) happens(*given.deed, given.at);
+    if (given.asks_for_reference) places_.asked_for_reference(given.axis);
 }
 
 void Rig::look_at_alarms(const runtime::Snapshot& snapshot) {
@@ -191,16 +220,8 @@ bool Rig::stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact) {
            (view.negative_limit_switch || view.positive_limit_switch);
 }
 
-/// A drive on a serial line turns round a poll and a ramp after its set-point; stopped and started again and again it may be further behind than the window
-/// that fits its work (config/machines/five-drives.yaml).
-bool Rig::hurried_on_slow_line(std::string_view alarm, const AlarmFact& fact) const {
-    return alarm == "following_error" && fact.source == AlarmSource::axis && !m.machine->config().axes[fact.index].drive.empty() &&
-           std::any_of(happenings_.begin(), happenings_.end(),
-                       [](const Happening& one) { return one.what == std::variant<Trouble, Deed>{Deed::stop}; });
-}
-
 bool Rig::explained(std::string_view alarm, const AlarmFact& fact) {
-    if (stopped_at_its_switch(alarm, fact) || hurried_on_slow_line(alarm, fact)) return true;
+    if (stopped_at_its_switch(alarm, fact)) return true;
     for (const auto& one : happenings_) {
         if (one.to && now() - *one.to > aftermath) continue;
         for (const auto& consequence : std::visit([](auto what) { return consequences(what); }, one.what))

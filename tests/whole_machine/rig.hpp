@@ -90,7 +90,6 @@ public:
     [[nodiscard]] bool any_in_error();
     [[nodiscard]] std::string standing();  ///< alarms, in words
     [[nodiscard]] const Places& places() const { return places_; }
-    void stalled(Duration length) { places_.stalled(length); }
 
     PrivateDisk disk;
     runtime::testing::TestMachine m;
@@ -107,7 +106,6 @@ private:
     void look_at_answers();
     [[nodiscard]] bool explained(std::string_view alarm, const AlarmFact& fact);
     [[nodiscard]] bool stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact);
-    [[nodiscard]] bool hurried_on_slow_line(std::string_view alarm, const AlarmFact& fact) const;
     [[nodiscard]] bool is_at(const AlarmFact& fact, const std::string& at) const;
     void tell(std::string line);
 
@@ -116,9 +114,19 @@ private:
     Places places_;
     std::deque<Happening> happenings_;
     std::size_t forgotten_ = 0;  // happenings that are long over
+    /// A command without an answer yet. It does nothing, and explains nothing, before it is accepted.
+    struct Given {
+        std::uint64_t cycle = 0;
+        std::optional<Deed> deed{};
+        std::string at{};
+        std::uint16_t axis = 0xFFFF;
+        bool asks_for_reference = false;
+    };
+    void accepted(const Given& given);
     using Known = std::tuple<AlarmId, AlarmSource, std::uint16_t, std::int64_t>;
-    std::vector<Known> known_, still_;                   // alarms of the cycle before, and of this one
-    std::map<std::uint64_t, std::uint64_t> unanswered_;  // by number: cycle in which it was given
+    std::vector<Known> known_, still_;           // alarms of the cycle before, and of this one
+    std::map<std::uint64_t, Given> unanswered_;  // by number
+    int shaking_ = 0;                            // troubles that last and may cost a motor without an encoder steps
     runtime::CommandAnswer last_answer_;
     std::uint64_t sequence_ = 0, cycles_ = 0;
 };

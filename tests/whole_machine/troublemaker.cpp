@@ -66,11 +66,12 @@ std::string Troublemaker::choose_place(Trouble trouble) {
     return {};
 }
 
-void Troublemaker::strike(Trouble trouble) {
+Blow Troublemaker::strike(Trouble trouble) {
     auto at = choose_place(trouble);
     const auto happening = rig_.begins(trouble, at);
     const Duration length = begin(trouble, at);
     under_way_.push_back({trouble, std::move(at), rig_.now() + length, happening});
+    return {length, trouble == Trouble::answers_late ? rig_.m.world.transport().faults.delay : Duration{}};
 }
 
 Duration Troublemaker::begin(Trouble trouble, const std::string& at) {
@@ -166,7 +167,6 @@ Duration Troublemaker::begin_beside(Trouble trouble, const std::string& at) {
 
 /// The computer does nothing for so long; the world goes on.
 void Troublemaker::stall(Duration length) {
-    rig_.stalled(length);
     rig_.m.clock.advance(length);
     rig_.m.world.network().advance(rig_.now());
     rig_.m.world.apply_events(rig_.now());

@@ -8,6 +8,12 @@
 
 namespace taktwerk::whole {
 
+/// How hard it strikes, where that was drawn.
+struct Blow {
+    Duration length{};  ///< 0: it has none
+    Duration delay{};   ///< of each answer
+};
+
 class Troublemaker {
 public:
     Troublemaker(Rig& rig, std::mt19937& random) : rig_(rig), random_(random) {}
@@ -15,7 +21,7 @@ public:
     /// This machine has what it takes.
     [[nodiscard]] bool possible(Trouble trouble) const;
     /// Begins, for a time drawn from the seed. A stall happens whole in here.
-    void strike(Trouble trouble);
+    Blow strike(Trouble trouble);
     /// Once a cycle.
     void step();
     [[nodiscard]] bool over() const { return under_way_.empty(); }

@@ -17,9 +17,14 @@ using Bus = ecat::Master::Phase;
 
 class Run {
 public:
-    Run(WholeRun& result, std::mt19937& random, std::string_view only)
+    Run(WholeRun& result, std::mt19937& random, const Wanted& wanted)
         : result_(result), random_(random), rig_(result.machine), troubles_(rig_, random), hands_(rig_, random) {
-        draw(only);
+        draw(wanted.trouble);
+        if (wanted.moment) result_.moment = *wanted.moment;
+        const auto& config = rig_.m.machine->config();
+        result_.cycle = config.cycle;
+        for (const auto& axis : config.axes)
+            result_.frames_supervised = result_.frames_supervised || (axis.profile && axis.profile->missed_frames_allowed > 0);
     }
     void go() {
         if (!rig_.problems.empty()) return finish();
@@ -107,7 +112,9 @@ private:
 
     void strike_all() {
         for (const auto trouble : result_.troubles) {
-            troubles_.strike(trouble);
+            const auto blow = troubles_.strike(trouble);
+            if (trouble == result_.troubles.front()) result_.length = blow.length;
+            result_.delay = std::max(result_.delay, blow.delay);
             run(drawn(300ms));
         }
     }
@@ -137,7 +144,7 @@ private:
             strike_all();
             if (result_.moment == Moment::recovering) {
                 hands_.reset_all();
-                troubles_.strike(result_.troubles.front());
+                result_.delay = std::max(result_.delay, troubles_.strike(result_.troubles.front()).delay);
             }
         }
         for (const auto end = rig_.now() + 20s; !troubles_.over() && rig_.now() < end;) live(10ms, by_hand);
@@ -161,7 +168,7 @@ private:
         rig_.m.machine->request_shutdown();
         const auto asked = rig_.now();
         run(drawn(100ms));
-        for (const auto trouble : result_.troubles) troubles_.strike(trouble);
+        for (const auto trouble : result_.troubles) (void)troubles_.strike(trouble);
         // A stall of the computer takes its time beside.
         const auto stalled = rig_.now() - asked;
         until([&] { return rig_.m.machine->phase() == MachinePhase::stopped || rig_.now() - asked > longest + stalled + 1s; }, 60s);
@@ -177,6 +184,7 @@ private:
         rig_.gather();
         result_.problems = rig_.problems;
         result_.commands = rig_.commands;
+        for (const auto& [alarm, count] : rig_.seen) result_.alarms.insert(alarm);
         result_.story = rig_.story();
         if (!result_.problems.empty()) result_.end = WholeEnd::none;
     }
@@ -190,13 +198,13 @@ private:
 
 }  // namespace
 
-WholeRun run_whole(std::uint32_t seed, std::string_view machine, std::string_view trouble) {
+WholeRun run_whole(std::uint32_t seed, const Wanted& wanted) {
     WholeRun result;
     result.seed = seed;
     std::mt19937 random{seed};
     const auto drawn = machine_names[random() % machine_names.size()];
-    result.machine = machine.empty() ? drawn : machine;
-    Run{result, random, trouble}.go();
+    result.machine = wanted.machine.empty() ? drawn : wanted.machine;
+    Run{result, random, wanted}.go();
     return result;
 }
 

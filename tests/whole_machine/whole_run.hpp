@@ -3,11 +3,14 @@
 // documented ways.
 
 #include <array>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/alarm.hpp"
+#include "core/time.hpp"
 #include "tests/whole_machine/trouble.hpp"
 
 namespace taktwerk::whole {
@@ -29,14 +32,24 @@ struct WholeRun {
     std::string machine;
     Moment moment = Moment::running;
     std::vector<Trouble> troubles;
-    Reaction reaction = Reaction::none;  ///< the strongest of the alarms that were raised from the first trouble on
+    Duration length{}, delay{};                 ///< of the first of them; of answers: the longest. 0: it has none
+    Duration cycle{};                           ///< of the machine
+    bool frames_supervised = false;             ///< one of its drives falls when a few frames in a row do not come
+    Reaction reaction = Reaction::none;         ///< the strongest of the alarms that were raised from the first trouble on
+    std::set<std::string, std::less<>> alarms;  ///< by their names, of the whole run
     WholeEnd end = WholeEnd::none;
     std::vector<std::string> problems;
     std::string story;  ///< what was done and what came of it
     long commands = 0;
 };
 
-/// `machine`: one of machine_names; empty: drawn. `trouble`: the only one; empty: drawn. A run is the same each time.
-[[nodiscard]] WholeRun run_whole(std::uint32_t seed, std::string_view machine = {}, std::string_view trouble = {});
+/// What a run is to have; what is left out is drawn.
+struct Wanted {
+    std::string_view machine;  ///< one of machine_names
+    std::string_view trouble;  ///< the only one
+    std::optional<Moment> moment{};
+};
+/// A run is the same each time.
+[[nodiscard]] WholeRun run_whole(std::uint32_t seed, const Wanted& wanted = {});
 
 }  // namespace taktwerk::whole

@@ -193,6 +193,23 @@ TEST(AxisFault, LeavingTheBusLosesTheReference) {
     EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
 }
 
+// What it shows is its command: where a motor without an encoder has come to rest after a fault nobody knows (SE-808X 2.4).
+TEST(AxisFault, AMotorWithoutAnEncoderIsNotHomedAfterAFault) {
+    for (const bool encoder : {true, false}) {
+        auto config = plain_axis();
+        config.homing.kind = HomingKind::set_here;
+        Rig rig(config, [&](FakeDrive& drive) { drive.caps.motor_has_encoder = encoder; });
+        rig.power_on();
+        rig.accept(home(0));
+        rig.run(5);
+        ASSERT_TRUE(rig.view().homed);
+        rig.drive.fault_code = 0x3221;
+        rig.run(10);
+        EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+        EXPECT_EQ(rig.view().homed, encoder);
+    }
+}
+
 // Warnings are shown and go by themselves.
 TEST(AxisFault, WarningStopsNothingAndClearsItself) {
     Rig rig;

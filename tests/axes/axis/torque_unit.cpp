@@ -203,6 +203,37 @@ TEST(TorqueAxis, SoftwareLimitsHold) {
     EXPECT_GT(rig.view().actual_position, 9);
 }
 
+// A link that fails while the drive is in torque: nobody hears in which mode it is, so nobody can say that it has refused one. The axis, whose error is that
+// it hears nothing, comes to rest along its ramp; a drive that was told to leave its mode before has its time when it answers again.
+TEST(TorqueAxis, ADriveThatIsNotHeardHasNotRefusedItsMode) {
+    TorqueRig rig;
+    rig.accept(torque(0.3, 0, 40));
+    ASSERT_TRUE(rig.run_until([&] { return rig.motor_velocity() > 39; }, 1000));
+    rig.accept(stop());
+    rig.drive.silent = true;
+    ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 100));
+    EXPECT_TRUE(rig.raised(AxisAlarm::axis_feedback_lost));
+    rig.run(3000);  // six times the patience with a drive that keeps its mode
+    EXPECT_FALSE(rig.raised(AxisAlarm::drive_mode_mismatch));
+    EXPECT_EQ(rig.view().set_velocity, 0);
+
+    rig.drive.forced_mode = DriveMode::cyclic_torque;  // heard again, in the mode that it was lost in
+    rig.drive.silent = false;
+    rig.run(200);
+    EXPECT_FALSE(rig.raised(AxisAlarm::drive_mode_mismatch));
+}
+
+// The same drive, heard all the time, that keeps its mode: that is the error. (The positive control of the one above.)
+TEST(TorqueAxis, ADriveThatIsHeardAndKeepsItsModeIsAnError) {
+    TorqueRig rig;
+    rig.accept(torque(0.3, 0, 40));
+    ASSERT_TRUE(rig.run_until([&] { return rig.motor_velocity() > 39; }, 1000));
+    rig.drive.forced_mode = DriveMode::cyclic_torque;
+    rig.accept(stop());
+    rig.run(3000);
+    EXPECT_TRUE(rig.raised(AxisAlarm::drive_mode_mismatch));
+}
+
 // A drive that does not take the mode: the command fails, the axis is where it was.
 TEST(TorqueAxis, ADriveThatRefusesTheModeIsAnErrorOfTheCommand) {
     TorqueRig rig(torque_axis(), [](FakeDrive& drive) { drive.refuses_torque_mode = true; });

@@ -126,6 +126,46 @@ TEST(Xp200Axis, AHaltedMotorIsNotDrivenToWhereTheSetPointWas) {
     EXPECT_LE(furthest, 0.03) << "a turn per minute or two for the window of a count";
 }
 
+// A stop in the middle of a reversal: the motor, which turns round a poll and a ramp after its set-point, brakes at once from the speed that it has, the
+// set-point from its own. They come to rest far from each other, and the drive has done what it was told. Told to move again at once, it makes up the rest.
+TEST(Xp200Axis, AStopInAReversalIsNoFollowingError) {
+    for (auto later = 500ms; later < 1000ms; later += 100ms) {
+        AxisRig rig{{{97, 33}, {108, 9}, {136, 1}, {164, 1}, {63, 200}}, {}, HomingKind::set_here, {}, 14};
+        rig.go();
+        ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, 90).error, ErrorId::none);
+        rig.run(2s);
+        ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, -90).error, ErrorId::none);
+        rig.run(later);
+        ASSERT_NE(rig.axis.view().state, AxisState::ErrorStop) << "a reversal alone stays in the window, " << to_seconds(later);
+        ASSERT_EQ(rig.submit(CommandKind::halt, 0, 0).error, ErrorId::none);
+        rig.run(200ms);
+        const double apart = std::abs(rig.axis.view().following_error);
+        ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, -20).error, ErrorId::none);
+        rig.run(4s);
+        EXPECT_EQ(rig.axis.view().state, AxisState::ContinuousMotion) << to_seconds(later) << " s, " << apart << " mm apart";
+        EXPECT_NEAR(rig.axis.view().following_error, 0, 1) << "made up";
+    }
+}
+
+// One that does not brake is one all the same.
+TEST(Xp200Axis, AMotorThatRunsOnAfterAStopIsAFollowingError) {
+    AxisRig rig;
+    rig.go();
+    ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, 50).error, ErrorId::none);
+    rig.run(2s);
+    const auto selected = static_cast<std::uint16_t>(rig.drive.servo().parameters()[122]);
+    ASSERT_NE(selected, 0);
+    ASSERT_EQ(rig.submit(CommandKind::halt, 0, 0).error, ErrorId::none);
+    const double from = rig.millimetres();
+    ASSERT_TRUE(rig.until(
+        [&] {
+            (void)rig.drive.servo().parameters().write(122, selected);  // the speed stays selected, whoever did that
+            return rig.axis.view().state == AxisState::ErrorStop;
+        },
+        3s));
+    EXPECT_GT(rig.millimetres() - from, 10) << "beyond the window, and the way that it takes to brake";
+}
+
 TEST(Xp200Axis, JogForwardAndBackEndsByItsLease) {
     AxisRig rig;
     rig.go();

@@ -21,18 +21,19 @@ struct AxisRig {
     static constexpr modbus::LineSettings fast{38400, modbus::Parity::even, 1};
 
     explicit AxisRig(std::vector<ParameterSetting> parameters = {{97, 33}, {108, 9}, {136, 1}, {164, 1}, {63, 200}},
-                     sim::PlantConfig plant = {}, HomingKind homing = HomingKind::set_here, sim::xp200::Options options = {})
+                     sim::PlantConfig plant = {}, HomingKind homing = HomingKind::set_here, sim::xp200::Options options = {},
+                     double window = 10)
         : profile(plain_profile()),
           drive(*profile, plant, options),
           port({.name = "u_drive", .station = 1, .profile = profile, .parameters = std::move(parameters)}, fast),
           lines(line),
-          axis(config(homing), port, cycle) {
+          axis(config(homing, window), port, cycle) {
         for (const auto& [number, value] : {std::pair{181, 1}, {182, 3}, {4, 1}})
             drive.servo().parameters().commission(static_cast<std::uint16_t>(number), value);
         line.connect(drive);
         lines.add(port);
     }
-    static AxisConfig config(HomingKind homing) {
+    static AxisConfig config(HomingKind homing, double window) {
         AxisConfig c;
         c.name = "u";
         c.gearing = {.counts_per_revolution = 10000, .feed = 10};
@@ -43,7 +44,7 @@ struct AxisRig {
                     .stop_deceleration = 400};
         c.control = {.mode = ControlMode::velocity, .kv = 3};
         c.windows = {.in_position = 0.05, .in_position_time = 10ms, .standstill_velocity = 0.1};
-        c.following = {.window = 10, .time = 50ms};
+        c.following = {.window = window, .time = 50ms};
         c.homing = {.kind = homing, .search_velocity = 20, .latch_velocity = 2, .acceleration = 100, .negative = true};
         return c;
     }
