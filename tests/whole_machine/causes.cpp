@@ -47,10 +47,11 @@ constexpr auto drive = all_of(std::array{C{"drive_fault", here}, C{"slave_emerge
                                          C{"enable_timeout", here}, C{"drive_homing_failed", here}, C{"homing_failed", here},
                                          C{"reference_lost", here}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
                               stopped);
-constexpr auto held =
-    all_of(std::array{C{"following_error", here}, C{"drive_fault", here}, C{"slave_emergency", here}, C{"drive_homing_failed", here},
-                      C{"homing_failed", here}, C{"drive_homing_timeout", here}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
-           stopped);
+/// Let go in a motion of its own, a drive makes up what it was held behind as fast as it can.
+constexpr auto held = all_of(std::array{C{"drive_too_fast", here}, C{"following_error", here}, C{"drive_fault", here},
+                                        C{"slave_emergency", here}, C{"drive_homing_failed", here}, C{"homing_failed", here},
+                                        C{"drive_homing_timeout", here}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
+                             stopped);
 constexpr auto line = all_of(std::array{C{"drive_silent"}, C{"drive_not_ready_on_line"}, C{"axis_feedback_lost", here},
                                         C{"drive_fault", here}, C{"following_error", here}},
                              stopped);
