@@ -1,0 +1,42 @@
+#pragma once
+// Where the cells of a run lie: they follow the curve, grow away from where they are small, and shrink towards rest.
+
+#include <span>
+#include <vector>
+
+#include "axes/path_time/curve.hpp"
+#include "axes/path_time/speed_problem.hpp"
+
+namespace taktwerk::axes {
+
+struct RunTask {
+    double from = 0;
+    double to = 0;
+    /// At `from`. Both 0: from rest.
+    double velocity = 0;
+    double acceleration = 0;
+    /// Override: scales the path's velocity limit. (0, 1].
+    double velocity_factor = 1;
+};
+
+class CellGrid {
+public:
+    void make(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task);
+
+    /// Between the cells, ascending; pieces at rest lie outside.
+    std::vector<double> nodes;
+    std::vector<double> breaks;  ///< of the curve, with both ends of the run
+    SpeedEnd start, end;
+
+private:
+    void add_breaks(const RunTask& task);
+    void add_stations(double largest);
+    [[nodiscard]] double size_at(double s, std::size_t& station) const;
+    void add_nodes();
+
+    const TimedCurve* curve_ = nullptr;
+    std::vector<double> stations_, sizes_;
+    std::vector<unsigned char> bends_;  // behind the station the curve bends
+};
+
+}  // namespace taktwerk::axes
