@@ -7,9 +7,12 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr std::size_t verified_points = 10;  // per cell, and its beginning
-// What interpolation over the whole cell may miss at its middle; over half a cell it misses a sixteenth of that (q''), an eighth (q''').
-constexpr double may_miss_velocity = 4e-6, may_miss_acceleration = 3e-6, may_miss_jerk = 8e-4;
+constexpr std::size_t per_quarter = 3;
+constexpr std::size_t verified_points = 4 * per_quarter;  // per cell, and its beginning
+// What interpolation may miss over twice the length that it is used for: then it misses a sixteenth of that (q'''), a thirty-second (q'').
+constexpr double may_miss_velocity = 6e-6, may_miss_acceleration = 6e-6, may_miss_jerk = 6e-4;
+// The error of such a polynomial is as t^3 (1 - t)^3, whose slope vanishes in the middle: its greatest slope by its middle value.
+constexpr double greatest_slope = 3.44;
 constexpr double looks_closer = 0.9;  // of a limit, from which on peaks between points count
 
 /// q', q'', q''' over an interval through their values at its ends: a polynomial of the fifth degree for q'.
@@ -48,6 +51,15 @@ double peak_of(const Samples& x) {
     return most;
 }
 
+/// What interpolation from a to b misses in the middle m.
+LimitUse missed(const TimedCurvePoint& a, const TimedCurvePoint& m, const TimedCurvePoint& b, std::size_t axis, double length,
+                const PathAxisLimits& limits) {
+    const Hermite whole(a, b, axis, length);
+    const double first = std::fabs(whole.first(0.5) - m.first[axis]);
+    const double second = std::max(std::fabs(whole.second(0.5) - m.second[axis]), greatest_slope / length * first);
+    return {first / limits.velocity, second / limits.acceleration, std::fabs(whole.third(0.5) - m.third[axis]) / limits.jerk};
+}
+
 double at_nodes(const Samples& x) { return std::max(std::fabs(x.front()), std::fabs(x.back())); }
 
 }  // namespace
@@ -58,7 +70,9 @@ void CellCheck::sample(const TimedCurve& curve, std::span<const PathAxisLimits> 
     limits_ = limits;
     const std::size_t n = nodes.size() - 1;
     begins_.resize(n);
+    quarters_.resize(n);
     middles_.resize(n);
+    three_quarters_.resize(n);
     ends_.resize(n);
     traits_.resize(n);
     std::size_t next = 0;
@@ -78,26 +92,50 @@ void CellCheck::sample(const TimedCurve& curve, std::span<const PathAxisLimits> 
 void CellCheck::judge(std::size_t cell) {
     Traits& t = traits_[cell];
     const TimedCurvePoint &a = begins_[cell], &m = middles_[cell], &b = ends_[cell];
-    const auto same = [](const PathLimits& x, const PathLimits& y) {
-        return x.velocity == y.velocity && x.acceleration == y.acceleration && x.deceleration == y.deceleration && x.jerk == y.jerk;
+    const auto near = [](double x, double y) { return x == y || std::fabs(x - y) < 1e-10 * x; };
+    const auto same = [&](const PathLimits& x, const PathLimits& y) {
+        return near(x.velocity, y.velocity) && near(x.acceleration, y.acceleration) && near(x.deceleration, y.deceleration) &&
+               near(x.jerk, y.jerk);
     };
-    t.interpolates = same(a.path, m.path) && same(a.path, b.path);
-    t.straight = t.interpolates;
-    t.missed = {};
-    LimitUse per_unit;
+    t.limits_stay = same(a.path, m.path) && same(a.path, b.path);
+    t.straight = t.limits_stay;
+    t.quartered = false;
+    t.per_unit = t.missed = {};
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         const double size = std::max(std::fabs(a.first[i]), 1e-9);
         for (const TimedCurvePoint* p : {&a, &m, &b})
             t.straight = t.straight && std::fabs(p->second[i]) * t.length < 1e-9 * size &&
                          std::fabs(p->third[i]) * t.length * t.length < 1e-9 * size;
-        per_unit.widen({std::fabs(a.first[i]) / limits_[i].velocity, std::fabs(a.first[i]) / limits_[i].acceleration,
-                        std::fabs(a.first[i]) / limits_[i].jerk});
-        const Hermite whole(a, b, i, t.length);
-        t.missed.widen({std::fabs(whole.first(0.5) - m.first[i]) / limits_[i].velocity,
-                        std::fabs(whole.second(0.5) - m.second[i]) / limits_[i].acceleration,
-                        std::fabs(whole.third(0.5) - m.third[i]) / limits_[i].jerk});
+        t.per_unit.widen({std::fabs(a.first[i]) / limits_[i].velocity, std::fabs(a.first[i]) / limits_[i].acceleration,
+                          std::fabs(a.first[i]) / limits_[i].jerk});
+        if (!t.straight) t.missed.widen(missed(a, m, b, i, t.length, limits_[i]));
     }
-    if (t.straight) t.missed = per_unit;
+}
+
+/// Points at its quarters, and what interpolation over its halves misses there.
+void CellCheck::quarter(std::size_t cell) {
+    Traits& t = traits_[cell];
+    quarters_[cell] = curve_->at(t.begin + 0.25 * t.length, CurveSide::after);
+    three_quarters_[cell] = curve_->at(t.begin + 0.75 * t.length, CurveSide::after);
+    t.quartered = true;
+    t.missed_of_half = {};
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        t.missed_of_half.widen(missed(begins_[cell], quarters_[cell], middles_[cell], i, t.length / 2, limits_[i]));
+        t.missed_of_half.widen(missed(middles_[cell], three_quarters_[cell], ends_[cell], i, t.length / 2, limits_[i]));
+    }
+}
+
+/// Over which parts of the cell interpolation does at this velocity.
+CellCheck::Between CellCheck::between(std::size_t cell, double velocity) {
+    const Traits& t = traits_[cell];
+    const auto does = [&](const LimitUse& missed) {
+        return missed.velocity * velocity < may_miss_velocity && missed.acceleration * velocity * velocity < may_miss_acceleration &&
+               missed.jerk * velocity * velocity * velocity < may_miss_jerk;
+    };
+    if (!t.limits_stay) return Between::nothing;
+    if (does(t.missed)) return Between::halves;
+    if (!t.quartered) quarter(cell);
+    return does(t.missed_of_half) ? Between::quarters : Between::nothing;
 }
 
 CellUse CellCheck::straight_use(std::size_t cell, const CellSquares& q, double velocity_factor) const {
@@ -108,19 +146,18 @@ CellUse CellCheck::straight_use(std::size_t cell, const CellSquares& q, double v
     if (bend < 0 && rise > 0 && rise < -bend) most = std::max(most, q.first - rise * rise / bend);
     const double node = std::sqrt(std::max(q.first, q.last)), v = std::sqrt(most), c = std::fabs(bend) / (t.length * t.length);
     const double one = rise / t.length, two = (q.last - q.middle) / t.length, up = std::max(one, two), down = std::min(one, two);
-    const double per_velocity = std::max(t.missed.velocity, 1 / (path.velocity * velocity_factor));
+    const double per_velocity = std::max(t.per_unit.velocity, 1 / (path.velocity * velocity_factor));
     CellUse use;
     use.peak = {v * per_velocity,
-                std::max({std::max(up, -down) * t.missed.acceleration, up / path.acceleration, -down / path.deceleration}),
-                c * v * std::max(t.missed.jerk, 1 / path.jerk)};
-    use.nodes = {node * per_velocity, use.peak.acceleration, c * node * std::max(t.missed.jerk, 1 / path.jerk)};
+                std::max({std::max(up, -down) * t.per_unit.acceleration, up / path.acceleration, -down / path.deceleration}),
+                c * v * std::max(t.per_unit.jerk, 1 / path.jerk)};
+    use.nodes = {node * per_velocity, use.peak.acceleration, c * node * std::max(t.per_unit.jerk, 1 / path.jerk)};
     return use;
 }
 
-CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_factor) const {
+CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_factor) {
     const Traits& t = traits_[cell];
     if (t.straight) return straight_use(cell, q, velocity_factor);
-    constexpr std::size_t half = verified_points / 2;
     Samples square{}, v{}, slope{}, x{}, y{}, z{};
     double most = 0;
     for (std::size_t k = 0; k <= verified_points; ++k) {
@@ -131,23 +168,21 @@ CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_f
         most = std::max(most, v[k]);
     }
     const double c = (q.first - 2 * q.middle + q.last) / (t.length * t.length);
-    const bool interpolates = t.interpolates && t.missed.velocity * most < may_miss_velocity &&
-                              t.missed.acceleration * most * most < may_miss_acceleration &&
-                              t.missed.jerk * most * most * most < may_miss_jerk;
+    const Between way = between(cell, most);
     CellUse use;
     const auto look = [&] {
         use.peak.widen({peak_of(x), peak_of(y), peak_of(z)});
         use.nodes.widen({at_nodes(x), at_nodes(y), at_nodes(z)});
     };
     std::array<TimedCurvePoint, verified_points + 1> points;
-    if (!interpolates)
+    if (way == Between::nothing)
         for (std::size_t k = 0; k <= verified_points; ++k)
-            points[k] = k == 0                ? begins_[cell]
-                        : k == half           ? middles_[cell]
-                        : k < verified_points ? curve_->at(t.begin + t.length * static_cast<double>(k) / verified_points, CurveSide::after)
-                                              : ends_[cell];
+            points[k] = k == 0 ? begins_[cell]
+                        : k == verified_points
+                            ? ends_[cell]
+                            : curve_->at(t.begin + t.length * static_cast<double>(k) / verified_points, CurveSide::after);
     for (std::size_t k = 0; k <= verified_points; ++k) {
-        const PathLimits& path = interpolates ? begins_[cell].path : points[k].path;
+        const PathLimits& path = way == Between::nothing ? points[k].path : begins_[cell].path;
         x[k] = v[k] / (path.velocity * velocity_factor);
         y[k] = slope[k] > 0 ? slope[k] / path.acceleration : -slope[k] / path.deceleration;
         z[k] = c * v[k] / path.jerk;
@@ -161,19 +196,26 @@ CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_f
             z[k] = (first * c + 3 * second * slope[k] + third * square[k]) * v[k] * over_j;
         };
         const auto exact = [&](std::size_t k, const TimedCurvePoint& p) { set(k, p.first[i], p.second[i], p.third[i]); };
-        if (interpolates) {
-            const TimedCurvePoint &a = begins_[cell], &m = middles_[cell], &b = ends_[cell];
-            exact(0, a);
-            exact(half, m);
-            exact(verified_points, b);
-            const Hermite one(a, m, i, t.length / 2), two(m, b, i, t.length / 2);
-            for (std::size_t k = 1; k < half; ++k) {
-                const double u = static_cast<double>(k) / half;
-                set(k, one.first(u), one.second(u), one.third(u));
-                set(half + k, two.first(u), two.second(u), two.third(u));
+        const auto part = [&](std::size_t from, std::size_t count, const TimedCurvePoint& a, const TimedCurvePoint& b) {
+            const Hermite curve(a, b, i, t.length * static_cast<double>(count) / verified_points);
+            exact(from, a);
+            for (std::size_t k = 1; k < count; ++k) {
+                const double u = static_cast<double>(k) / static_cast<double>(count);
+                set(from + k, curve.first(u), curve.second(u), curve.third(u));
             }
-        } else {
+        };
+        if (way == Between::nothing) {
             for (std::size_t k = 0; k <= verified_points; ++k) exact(k, points[k]);
+        } else if (way == Between::quarters) {
+            part(0, per_quarter, begins_[cell], quarters_[cell]);
+            part(per_quarter, per_quarter, quarters_[cell], middles_[cell]);
+            part(2 * per_quarter, per_quarter, middles_[cell], three_quarters_[cell]);
+            part(3 * per_quarter, per_quarter, three_quarters_[cell], ends_[cell]);
+            exact(verified_points, ends_[cell]);
+        } else {
+            part(0, 2 * per_quarter, begins_[cell], middles_[cell]);
+            part(2 * per_quarter, 2 * per_quarter, middles_[cell], ends_[cell]);
+            exact(verified_points, ends_[cell]);
         }
         look();
     }

@@ -1,7 +1,8 @@
 #pragma once
-// What a v2(s) uses of all limits over a cell: the curve is evaluated at the cell's ends and middle; between them it is interpolated, where that is
+// What a v2(s) uses of all limits over a cell: the curve is evaluated at the cell's ends and quarters; between them it is interpolated, where that is
 // known to be near enough, else evaluated.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -33,21 +34,26 @@ public:
     [[nodiscard]] bool breaks_before(std::size_t cell) const noexcept { return traits_[cell].breaks_before; }
     [[nodiscard]] bool straight(std::size_t cell) const noexcept { return traits_[cell].straight; }
 
-    [[nodiscard]] CellUse use(std::size_t cell, const CellSquares& squares, double velocity_factor) const;
+    /// Evaluates the curve where it has to.
+    [[nodiscard]] CellUse use(std::size_t cell, const CellSquares& squares, double velocity_factor);
 
 private:
     struct Traits {
         double begin = 0, length = 0;
-        bool breaks_before = false, straight = false, interpolates = false;
-        LimitUse missed;  // straight: use per v, a, j of the axes; bent: what interpolation misses per v, v2, v3
+        bool breaks_before = false, straight = false, limits_stay = false, quartered = false;
+        LimitUse per_unit;                // straight: what the axes use per v, a, j of s
+        LimitUse missed, missed_of_half;  // what interpolation over the cell, over its halves misses per v, v2, v3
     };
+    enum class Between : std::uint8_t { halves, quarters, nothing };
 
+    [[nodiscard]] Between between(std::size_t cell, double velocity);
+    void quarter(std::size_t cell);
     void judge(std::size_t cell);
     [[nodiscard]] CellUse straight_use(std::size_t cell, const CellSquares& squares, double velocity_factor) const;
 
     const TimedCurve* curve_ = nullptr;
     std::span<const PathAxisLimits> limits_;
-    std::vector<TimedCurvePoint> begins_, middles_, ends_;
+    std::vector<TimedCurvePoint> begins_, quarters_, middles_, three_quarters_, ends_;
     std::vector<Traits> traits_;
 };
 

@@ -197,14 +197,14 @@ void RunPlanner::take_over(const RunShape& former) {
     }
 }
 
-CellUse RunPlanner::use_of_cell(std::size_t c) const {
+CellUse RunPlanner::use_of_cell(std::size_t c) {
     const auto cell = static_cast<int>(c);
     return check_.use(c, {problem_.node(cell, middles_), middles_[c], problem_.node(cell + 1, middles_)}, hard_factor());
 }
 
 /// Near the end of a search: where a limit will be crossed between nodes by as much as it is used there more than at them, less is allowed at once.
 void RunPlanner::come_near(const CellRange& cells, const std::vector<double>&) {
-    constexpr double hair = 1 - 2e-4, counts = 0.7, most = 1.03;  // what is more is a matter of the cell's size
+    constexpr double hair = 1 - 2e-4, counts = 0.5, most = 1.03;  // what is more is a matter of the cell's size
     for (int i = cells.first; i < cells.last; ++i) {
         const CellUse use = use_of_cell(static_cast<std::size_t>(i));
         CellShare& share = shares_[static_cast<std::size_t>(i)];
@@ -249,7 +249,7 @@ LimitUse RunPlanner::verify(const CellRange& range) {
 
 /// Halves the cells of split_: the same v2, with one more coefficient for each.
 void RunPlanner::split_cells() {
-    std::vector<double> nodes, middles;
+    std::vector<double> nodes, middles, reach;
     std::vector<CellShare> shares;
     std::vector<int> beyond;
     std::size_t next = 0, look = 0;
@@ -268,15 +268,18 @@ void RunPlanner::split_cells() {
             middles.push_back((first + middles_[i]) / 2);
             middles.push_back((middles_[i] + last) / 2);
             shares.insert(shares.end(), 2, shares_[i]);
+            reach.insert(reach.end(), 2, reach_[i]);
         } else {
             middles.push_back(middles_[i]);
             shares.push_back(shares_[i]);
+            reach.push_back(reach_[i]);
         }
     }
     nodes.push_back(grid_.nodes.back());
     grid_.nodes.swap(nodes);
     middles_.swap(middles);
     shares_.swap(shares);
+    reach_.swap(reach);
     beyond_.swap(beyond);
     split_.clear();
     uses_.assign(middles_.size(), {});
@@ -322,7 +325,7 @@ bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* w
 }
 
 /// Window by window: each begins with what the one before it found, ends in what lies behind it as it was, and only its first part stays.
-bool RunPlanner::sweep(RunPlan& out) {
+bool RunPlanner::sweep(SpeedGuess guess, RunPlan& out) {
     const int n = problem_.cells();
     for (int first = 0; first < n;) {
         int stays = std::min(first + window, n);
@@ -333,7 +336,7 @@ bool RunPlanner::sweep(RunPlan& out) {
             while (last < n && (last < stays + look_ahead || grid_.nodes[static_cast<std::size_t>(last)] < reach)) ++last;
             if (n - last < window / 2) last = n;
         }
-        if (!solve({first, last}, SpeedGuess::rough, this, out)) return false;
+        if (!solve({first, last}, guess, this, out)) return false;
         first = last == n ? n : stays;
     }
     return true;
@@ -343,6 +346,10 @@ bool RunPlanner::sweep(RunPlan& out) {
 bool RunPlanner::mend(RunPlan& out) {
     while (!beyond_.empty() && out.rounds < rounds_at_most) {
         ++out.rounds;
+        for (std::vector<int>* cells : {&beyond_, &split_}) {  // a cell may have been looked at twice
+            std::sort(cells->begin(), cells->end());
+            cells->erase(std::unique(cells->begin(), cells->end()), cells->end());
+        }
         if (!split_.empty()) split_cells();
         if (splits_left_ > 0) --splits_left_;
         std::vector<CellRange> ranges;
@@ -352,15 +359,16 @@ bool RunPlanner::mend(RunPlan& out) {
             else ranges.push_back(range);
         }
         beyond_.clear();
-        for (CellRange& range : ranges) {
-            int more = 8 * beside;  // where it cannot be mended so near
-            while (!solve(range, SpeedGuess::near, nullptr, out)) {
-                if (range.first == 0 && range.last == problem_.cells()) return false;
-                range = {std::max(range.first - more, 0), std::min(range.last + more, problem_.cells())};
-                more *= 8;
-            }
+        bool near = true;
+        for (const CellRange& range : ranges) near = near && solve(range, SpeedGuess::near, nullptr, out);
+        if (near) {
+            for (const CellRange& range : ranges) (void)verify({range.first - 1, range.last + 1});
+            continue;
         }
-        for (const CellRange& range : ranges) (void)verify({range.first - 1, range.last + 1});
+        // What is beside holds it there: all together. From rest a little slower is inside everything.
+        if (from_rest()) problem_.come_inside(middles_, 0.97);
+        if (!sweep(from_rest() ? SpeedGuess::near : SpeedGuess::rough, out)) return false;
+        (void)verify({0, problem_.cells()});
     }
     return beyond_.empty();
 }
@@ -374,23 +382,22 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     split_.clear();
     splits_left_ = split_rounds;
     grid_.make(*curve_, limits_, task);
-    const bool from_rest = grid_.start.rest_length > 0;
     shares_.assign(grid_.nodes.size() - 1, untouched);
-    if (former != nullptr && !from_rest) {
+    if (former != nullptr && !from_rest()) {
         take_over(*former);
     } else {
         make_problem();
         first_guess();
-        if (from_rest) problem_.come_inside(middles_, 0.8);
+        if (from_rest()) problem_.come_inside(middles_, 0.8);
     }
     uses_.assign(middles_.size(), {});
     ++out.rounds;
-    const bool solved = sweep(out);
+    const bool solved = sweep(SpeedGuess::rough, out);
     out.use = verify({0, problem_.cells()});
     out.found = solved && mend(out);
     LimitUse use;
     for (const LimitUse& cell : uses_) use.widen(cell);
-    if (!out.found && from_rest) {
+    if (!out.found && from_rest()) {
         splits_left_ = 0;
         use = verify({0, problem_.cells()});
         slow_down(use);

@@ -54,10 +54,10 @@ private:
     void add_cell(int cell);
     void first_guess();
     void take_over(const RunShape& former);
-    bool sweep(RunPlan& out);
+    bool sweep(SpeedGuess guess, RunPlan& out);
     bool solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out);
     void come_near(const CellRange& cells, const std::vector<double>& middles) override;
-    [[nodiscard]] CellUse use_of_cell(std::size_t cell) const;
+    [[nodiscard]] CellUse use_of_cell(std::size_t cell);
     LimitUse verify(const CellRange& range);
     bool mend(RunPlan& out);
     void push_share(int cell);
@@ -65,6 +65,7 @@ private:
     void slow_down(const LimitUse& use);
     [[nodiscard]] double rest_square(double at, double length, CurveSide side) const;
     void make_pieces(RunPlan& out) const;
+    [[nodiscard]] bool from_rest() const noexcept { return grid_.start.rest_length > 0; }
     /// What the path's velocity limit is times where nothing may cross it.
     [[nodiscard]] double hard_factor() const noexcept { return task_.velocity > 0 ? 1 : task_.velocity_factor; }
 

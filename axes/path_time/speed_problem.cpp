@@ -9,14 +9,17 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr int max_steps = 60;
-constexpr int steps_inside = 30;          // until all bounds hold
-constexpr double to_the_boundary = 0.95;  // of the way that a step may go towards it
-constexpr double inside_first = 10;       // gap while a bound is relaxed: the goal counts a tenth of it
-constexpr double room_beyond = 0.1;       // of a bound that is relaxed
-constexpr double little_room = 2e-3;      // of one that was lowered on the way
-constexpr double settled_gap = 1e-3;      // of the goal: what is left to gain
-constexpr double off_centre = 20;         // how far a multiplier may be
-constexpr double near_gap = 2e-2;         // where it shows which limits hold back
+constexpr int steps_inside = 60, steps_inside_near = 10;  // until all bounds hold
+constexpr double to_the_boundary = 0.95;                  // of the way that a step may go towards it
+constexpr double inside_first = 10;                       // gap while a bound is relaxed: the goal counts a tenth of it
+constexpr double inside_near = 0.3;                       // the same where little is beyond a bound
+constexpr double room_near = 0.02;
+constexpr double room_beyond = 0.1;   // of a bound that is relaxed
+constexpr double hair = 1e-5;         // of a bound: what has to be left before it is drawn in
+constexpr double little_room = 2e-3;  // of one that was lowered on the way
+constexpr double settled_gap = 1e-3;  // of the goal: what is left to gain
+constexpr double off_centre = 20;     // how far a multiplier may be
+constexpr double near_gap = 2e-2;     // where it shows which limits hold back
 
 }  // namespace
 
@@ -175,10 +178,16 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
             const Lanes value = x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2;
             for (int lane = 0; lane < 2; ++lane) {
                 const double used = value[lane] / size, limit = x.wanted[lane];
-                const double wanted = used < limit * (1 - 1e-7) ? limit : used + beyond * std::max(limit, used);
-                x.bound[lane] = room == Room::first ? wanted : std::min(std::max(x.bound[lane], limit), wanted);
+                const double before = std::max(x.bound[lane], limit);
+                double bound = limit;
+                if (used >= limit * (1 - hair)) bound = used + beyond * std::max(limit, used);
+                if (room == Room::less) bound = std::min(bound, before);
+                if (room == Room::half) bound = std::max(limit, used + 0.5 * (before - used));
+                x.bound[lane] = bound;
                 if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && x.bound[lane] <= limit;
-                x.inverse[lane] = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
+                const double inverse = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
+                x.z[lane] *= inverse / x.inverse[lane];  // as central as before
+                x.inverse[lane] = inverse;
             }
         };
         for (int i = 0; i < p.plain_count; ++i) look(plain_[static_cast<std::size_t>(p.plain + i)], 1);
@@ -245,6 +254,12 @@ void SpeedProblem::assemble(const CellRange& range, double mu) {
         right_[c] += f0[0] + f0[1];
         right_[c + 1] += f1[0] + f1[1];
         right_[c + 2] += f2[0] + f2[1];
+    }
+    // No middle may come to 0: with all of them positive, v2 is.
+    for (auto i = static_cast<std::size_t>(range.first + 1); i <= static_cast<std::size_t>(range.last); ++i) {
+        const double over = 1 / d_[i];
+        band_[3 * i] += mu * over * over;
+        right_[i] += mu * over;
     }
 }
 
@@ -370,31 +385,34 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
         sides += 2 * (p.plain_count + p.jerk_count);
     });
     scale_ = 1 / total;
-    relax(range, Room::first, room_beyond);
+    relax(range, Room::first, guess == SpeedGuess::rough ? room_beyond : room_near);
     const auto finish = [&] { std::copy(d_.begin() + range.first + 1, d_.begin() + range.last + 1, d.begin() + range.first); };
     // While something is relaxed, being inside counts for more than being fast.
-    const auto come_in = [&](double weight) {
-        const double mu = weight / sides;
+    const bool rough = guess == SpeedGuess::rough;
+    const auto come_in = [&] {
+        double mu = (rough ? inside_first : inside_near) / sides;
         center(range, mu);
-        for (int i = 0; i < steps_inside && !feasible_; ++i) {
+        for (int i = 0; i < (rough ? steps_inside : steps_inside_near) && !feasible_; ++i) {
             ++outcome.steps;
             assemble(range, mu);
             if (!factor_and_solve(range)) return false;
-            (void)take_step(range, mu, measure_step(range));
-            relax(range, Room::less, room_beyond);
+            const double step = measure_step(range);
+            (void)take_step(range, mu, step);
+            relax(range, rough ? Room::less : Room::half, room_beyond);
+            if (step > 0.9) mu *= 3;  // it is central, and still outside: further from all bounds
         }
         return feasible_;
     };
     if (range.first < range.last) {
-        if (!feasible_ && !come_in(inside_first)) {
+        if (!feasible_ && !come_in()) {
             finish();
             return outcome;
         }
-        double mu = (guess == SpeedGuess::rough ? 0.1 : 0.01) / sides, previous = 1;
+        double mu = (rough ? 0.1 : 0.01) / sides;
         center(range, mu);
         for (const int most = outcome.steps + max_steps; outcome.steps < most && !outcome.settled;) {
             ++outcome.steps;
-            if (!feasible_) relax(range, Room::less, little_room);
+            if (!feasible_) relax(range, Room::half, little_room);
             assemble(range, mu);
             if (!factor_and_solve(range)) break;
             const double step = measure_step(range), gap = take_step(range, mu, step);
@@ -406,9 +424,7 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
                 relax(range, Room::first, little_room);
                 continue;
             }
-
-            outcome.settled = gap < settled_gap && decrement_ < settled_gap && previous > 0.5 && step > 0.5;
-            previous = step;
+            outcome.settled = gap + decrement_ < settled_gap;
             // Far from the central path (a step promises much) mu waits for it.
             const double wanted = gap * (step > 0.9 ? 0.1 : step > 0.5 ? 0.3 : step > 0.2 ? 0.6 : 1.0);
             mu = std::max({wanted, std::min(0.3 * decrement_, mu * sides), 0.1 * settled_gap}) / sides;

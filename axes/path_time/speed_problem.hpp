@@ -88,7 +88,7 @@ public:
 
 private:
     using Lanes [[gnu::vector_size(16)]] = double;  // two sides at once
-    enum class Room : std::uint8_t { first, less };
+    enum class Room : std::uint8_t { first, less, half };
     enum class Bound : std::uint8_t { none, acceleration, cap, soft_cap };
     struct Triple {
         double g[3] = {0, 0, 0};  // of the middles of the cell before, of the cell, of the cell behind
