@@ -1,6 +1,7 @@
 #pragma once
 // Where the cells of a run lie: they follow the curve, grow away from where they are small, and shrink towards rest.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,15 @@ struct RunTask {
 
 class CellGrid {
 public:
-    void make(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task);
+    /// Coarse: as for a run of many spans, whatever this one is.
+    enum class Grain : std::uint8_t { by_run, coarse };
+    void make(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, Grain grain);
 
     /// Between the cells, ascending; pieces at rest lie outside.
     std::vector<double> nodes;
     std::vector<double> breaks;  ///< of the curve, with both ends of the run
     SpeedEnd start, end;
+    bool coarse = false;  ///< as it was made
 
 private:
     void add_breaks(const RunTask& task);

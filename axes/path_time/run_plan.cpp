@@ -69,7 +69,7 @@ void RunPlanner::add_cell(int cell) {
             if (square < unlimited) problem_.add_cap(square);
         }
         // What lies between the nodes shows when all is looked at.
-        if (place == CellPlace::middle && (straight || grid_.breaks.size() > 64)) continue;
+        if (place == CellPlace::middle && (straight || grid_.coarse)) continue;
         if (straight) {  // one row says what all axes say
             if (!shared && l.acceleration < unlimited)
                 problem_.add_acceleration({0, 0.5 / l.acceleration, 0, 1, l.deceleration / l.acceleration});
@@ -94,9 +94,13 @@ void RunPlanner::add_cell(int cell) {
 
 void RunPlanner::make_problem() {
     check_.sample(*curve_, limits_, grid_.nodes, grid_.breaks);
-    problem_.begin(grid_.nodes, grid_.start, grid_.end);
+    problem_.begin(grid_.nodes, grid_.start, grid_.end, untouched);
     for (int i = 0; i < problem_.cells(); ++i) add_cell(i);
-    for (int i = 0; i < problem_.cells(); ++i) push_share(i);
+    for (int i = 0; i < problem_.cells(); ++i) {
+        const CellShare& share = shares_[static_cast<std::size_t>(i)];
+        if (share.velocity < untouched.velocity || share.acceleration < untouched.acceleration || share.jerk < untouched.jerk)
+            push_share(i);
+    }
 }
 
 /// What the cell may use, told to all places that it has a part of.
@@ -316,6 +320,7 @@ void RunPlanner::make_pieces(RunPlan& out) const {
     out.duration = time;
     out.shape.end = nodes.back() + ends;
     out.shape.velocity_factor = task_.velocity_factor;
+    out.shape.coarse = grid_.coarse;
 }
 
 bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
@@ -381,7 +386,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     beyond_.clear();
     split_.clear();
     splits_left_ = split_rounds;
-    grid_.make(*curve_, limits_, task);
+    grid_.make(*curve_, limits_, task, former != nullptr && former->coarse ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
     shares_.assign(grid_.nodes.size() - 1, untouched);
     if (former != nullptr && !from_rest()) {
         take_over(*former);

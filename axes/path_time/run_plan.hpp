@@ -21,6 +21,7 @@ struct RunShape {
     std::vector<double> middles;  ///< Bernstein's middle coefficient of each cell
     double end = 0;               ///< where it comes to rest
     double velocity_factor = 1;   ///< that it was made for
+    bool coarse = false;          ///< planned as one of many spans
 };
 
 struct RunPlan {

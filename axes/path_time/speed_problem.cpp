@@ -23,12 +23,13 @@ constexpr double near_gap = 2e-2;     // where it shows which limits hold back
 
 }  // namespace
 
-void SpeedProblem::begin(const std::vector<double>& nodes, const SpeedEnd& start, const SpeedEnd& end) {
+void SpeedProblem::begin(const std::vector<double>& nodes, const SpeedEnd& start, const SpeedEnd& end, const CellShare& all) {
     nodes_ = nodes;
     lengths_.clear();
     for (std::size_t i = 1; i < nodes.size(); ++i) lengths_.push_back(nodes[i] - nodes[i - 1]);
     start_ = start;
     end_ = end;
+    all_ = all;
     places_.clear();
     plain_.clear();
     jerk_.clear();
@@ -108,15 +109,15 @@ void SpeedProblem::add_side(const Triple& l, double sign, double limit, Bound ki
     p.g1[lane] = sign * l.g[1];
     p.g2[lane] = sign * l.g[2];
     p.k[lane] = sign * l.k;
-    p.limit[lane] = p.wanted[lane] = limit;
+    p.limit[lane] = limit;
+    p.wanted[lane] = limit * share_of(kind, all_);
     p.kind[lane] = kind;
     half_ = !half_;
 }
 
 void SpeedProblem::add_plain(const SpeedRow& row, Bound kind) {
     // At the middle as Bernstein's coefficient: what it may be, v2 on the cell may be.
-    if (places_.size() % 3 == 2) add_side({{0, row.at, 0}, 0}, 1, row.above, kind);
-    else add_side(triple_of(row), 1, row.above, kind);
+    add_side(places_.size() % 3 == 2 ? Triple{{0, row.at, 0}, 0} : triple_of(row), 1, row.above, kind);
 }
 
 void SpeedProblem::add_acceleration(const SpeedRow& row) {
@@ -132,18 +133,27 @@ void SpeedProblem::add_jerk(const SpeedRow& row) {
     p.g1 = Lanes{l.g[1], -l.g[1]};
     p.g2 = Lanes{l.g[2], -l.g[2]};
     p.k = Lanes{l.k, -l.k};
-    p.limit = p.wanted = p.bound = Lanes{row.above, row.below};
+    p.limit = Lanes{row.above, row.below};
+    p.wanted = p.limit * all_.jerk;
     jerk_.push_back(p);
     ++places_.back().jerk_count;
+}
+
+double SpeedProblem::share_of(Bound kind, const CellShare& share) noexcept {
+    switch (kind) {
+        case Bound::acceleration: return share.acceleration;
+        case Bound::cap: return share.velocity * share.velocity;
+        case Bound::none:
+        case Bound::soft_cap: break;
+    }
+    return 1;
 }
 
 void SpeedProblem::share(int cell, CellPlace place, const CellShare& share) {
     const Place& p = places_[3 * static_cast<std::size_t>(cell) + static_cast<std::size_t>(place)];
     for (int i = 0; i < p.plain_count; ++i) {
         Pair& pair = plain_[static_cast<std::size_t>(p.plain + i)];
-        for (int lane = 0; lane < 2; ++lane)
-            if (pair.kind[lane] == Bound::acceleration) pair.wanted[lane] = pair.limit[lane] * share.acceleration;
-            else if (pair.kind[lane] == Bound::cap) pair.wanted[lane] = pair.limit[lane] * share.velocity * share.velocity;
+        for (int lane = 0; lane < 2; ++lane) pair.wanted[lane] = pair.limit[lane] * share_of(pair.kind[lane], share);
     }
     for (int i = 0; i < p.jerk_count; ++i) {
         Pair& pair = jerk_[static_cast<std::size_t>(p.jerk + i)];

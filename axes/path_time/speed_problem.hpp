@@ -63,8 +63,8 @@ protected:
 
 class SpeedProblem {
 public:
-    /// Begins a problem of the cells between `nodes` (ascending, two or more).
-    void begin(const std::vector<double>& nodes, const SpeedEnd& start, const SpeedEnd& end);
+    /// Begins a problem of the cells between `nodes` (ascending, two or more); each may use `all` until told otherwise.
+    void begin(const std::vector<double>& nodes, const SpeedEnd& start, const SpeedEnd& end, const CellShare& all);
     /// The places of a cell in their order, cell after cell; rows after their place.
     void add_place(int cell, CellPlace place);
     /// v2 <= square at the last place (its middle: Bernstein's coefficient; then v2 <= square all over the cell, if it is at both ends).
@@ -108,6 +108,7 @@ private:
         Bound kind[2];
     };
 
+    [[nodiscard]] static double share_of(Bound kind, const CellShare& share) noexcept;
     [[nodiscard]] SpeedRow cap_of(double square) const noexcept { return {1 / square, 0, 0, 1, 0}; }
     [[nodiscard]] Triple triple_of(const SpeedRow& row) const noexcept;
     void add_plain(const SpeedRow& row, Bound kind);
@@ -128,6 +129,7 @@ private:
 
     std::vector<double> nodes_, lengths_;
     SpeedEnd start_, end_;
+    CellShare all_{};
     std::vector<Place> places_;  // three per cell
     std::vector<Pair> plain_, jerk_;
     Triple square_, slope_, bend_;  // of the last place
