@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t per_quarter = 3;
 constexpr std::size_t verified_points = 4 * per_quarter;  // per cell, and its beginning
 // What interpolation may miss over twice the length that it is used for: then it misses a sixteenth of that (q'''), a thirty-second (q'').
-constexpr double may_miss_velocity = 6e-6, may_miss_acceleration = 6e-6, may_miss_jerk = 6e-4;
+constexpr double may_miss_velocity = 4e-6, may_miss_acceleration = 4e-6, may_miss_jerk = 2e-4;
 // The error of such a polynomial is as t^3 (1 - t)^3, whose slope vanishes in the middle: its greatest slope by its middle value.
 constexpr double greatest_slope = 3.44;
 constexpr double looks_closer = 0.9;  // of a limit, from which on peaks between points count
@@ -39,14 +39,19 @@ private:
 
 using Samples = std::array<double, verified_points + 1>;
 
-/// The greatest magnitude, with what a parabola through each three samples reaches between them.
+/// The greatest magnitude, with what a parabola through each three samples reaches between them, and what it may be wrong by: a cubic's part.
 double peak_of(const Samples& x) {
+    constexpr double cubic = 0.065;  // the greatest |t (t^2 - 1)|/6 on [-1, 1]
     double most = 0;
     for (const double v : x) most = std::max(most, std::fabs(v));
     if (most < looks_closer) return most;
     for (std::size_t i = 2; i < x.size(); ++i) {
         const double bend = x[i] - 2 * x[i - 1] + x[i - 2], slope = x[i] - x[i - 2];
-        if (std::fabs(slope) < 2.2 * std::fabs(bend)) most = std::max(most, std::fabs(x[i - 1] - slope * slope / (8 * bend)));
+        if (std::fabs(slope) >= 2.2 * std::fabs(bend)) continue;
+        double third = 0;
+        if (i > 2) third = std::fabs(bend - (x[i - 1] - 2 * x[i - 2] + x[i - 3]));
+        if (i + 1 < x.size()) third = std::max(third, std::fabs(x[i + 1] - 2 * x[i] + x[i - 1] - bend));
+        most = std::max(most, std::fabs(x[i - 1] - slope * slope / (8 * bend)) + cubic * third);
     }
     return most;
 }

@@ -49,12 +49,15 @@ void CellGrid::add_stations(double largest) {
         } else {
             sizes_.back() = std::min(sizes_.back(), begins);
         }
-        const int between = middle < length ? stations_between : 1;
+        // Where it bends much, narrow places are looked for between the stations as well.
+        const bool sharp = middle < length / 8;
+        const int between = middle < length ? (sharp ? 2 * stations_between : stations_between) : 1;
         for (int k = 1; k <= between; ++k) {
             const double s = k == between ? breaks[i + 1] : a + length * k / between, gap = length / between;
             double least = std::min({largest, length, feature(s, CurveSide::before)});
-            // A narrow place between two stations.
-            if (between > 1) least = std::min(least, feature(s - 0.5 * gap, CurveSide::after));
+            if (sharp)
+                for (const double part : {0.2, 0.4, 0.6, 0.8}) least = std::min(least, feature(s - part * gap, CurveSide::after));
+            else if (between > 1) least = std::min(least, feature(s - 0.5 * gap, CurveSide::after));
             sizes_.back() = std::min(sizes_.back(), std::max(least, sizes_.back() / 16));
             bends_.push_back(middle < unlimited ? 1 : 0);
             stations_.push_back(s);
@@ -123,6 +126,9 @@ void CellGrid::add_nodes() {
         for (std::size_t k = first + 1; k < nodes.size(); ++k) nodes[k] = a + (nodes[k] - a) * shrink;
     }
     nodes.push_back(breaks.back() - end.rest_length);
+    // To the last bit, so that no piece ends behind the run.
+    end.rest_length = breaks.back() - nodes.back();
+    if (start.rest_length > 0) start.rest_length = nodes.front() - breaks.front();
 }
 
 }  // namespace taktwerk::axes

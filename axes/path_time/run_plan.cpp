@@ -10,11 +10,15 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr int rounds_at_most = 9;
+constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
-constexpr double slow_share = 0.02;  // of v2: what goes on where a former plan stopped
-constexpr int window = 192;          // cells that are solved and stay
-constexpr int look_ahead = 48;       // cells behind them that are solved with them, at least: as far as braking would reach
-constexpr int beside = 10;           // cells on both sides that are solved again with one that was beyond a limit
+constexpr double slow_share = 0.02;    // of v2: what goes on where a former plan stopped
+constexpr double longest_piece = 0.1;  // s
+constexpr double most_parts = 1500;    // that pieces are cut into
+constexpr double braking_share = 0.7;  // of the deceleration, to a lowered velocity
+constexpr int window = 192;            // cells that are solved and stay
+constexpr int look_ahead = 48;         // cells behind them that are solved with them, at least: as far as braking would reach
+constexpr int beside = 10;             // cells on both sides that are solved again with one that was beyond a limit
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -192,11 +196,18 @@ void RunPlanner::take_over(const RunShape& former) {
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
+    // A lowered velocity factor: braking to what it allows, as soon as what is left of the acceleration has gone.
+    const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
+    const double ramp = task_.velocity * (std::max(task_.acceleration, 0.0) + l.deceleration) / l.jerk;
+    double brakes = task_.velocity_factor < former.velocity_factor ? task_.velocity * task_.velocity : unlimited;
     first_window_ = 0;
     for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
         const double first = former_square(grid_.nodes[i]), middle = former_square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2),
                      last = former_square(grid_.nodes[i + 1]);
-        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+        if (grid_.nodes[i] > task_.from + ramp)
+            brakes -= braking_share * 2 * along_limits(check_.middle(i), limits_, 1).deceleration * (grid_.nodes[i + 1] - grid_.nodes[i]);
+        const double lowered = std::max(brakes, middles_[i]);
+        middles_[i] = std::min(std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]), lowered);
         if (middle > 0) first_window_ = static_cast<int>(i) + 1;
     }
 }
@@ -237,11 +248,14 @@ LimitUse RunPlanner::verify(const CellRange& range) {
         if (use.inside()) continue;
         beyond_.push_back(i);
         // Far beyond, the cell is too long for what happens in it.
-        if (splits_left_ > 0 && std::max({use.velocity, use.acceleration, use.jerk}) > 1.02) {
+        CellShare& share = shares_[c];
+        const double most = std::max({use.velocity, use.acceleration, use.jerk}),
+                     least = std::min({share.velocity, share.acceleration, share.jerk});
+        if (splits_left_ > 0 && (most > 1.02 || least < least_share)) {
             split_.push_back(i);
             continue;
         }
-        CellShare& share = shares_[c];
+        if (least < least_share) continue;  // what is left is for all to be slower
         constexpr double beyond = 1 + 1e-4;
         if (use.velocity > 1 - 2e-6) share.velocity /= use.velocity * beyond;
         if (use.acceleration > 1 - 2e-6) share.acceleration /= use.acceleration * beyond;
@@ -307,18 +321,36 @@ void RunPlanner::make_pieces(RunPlan& out) const {
         time += p.duration;
         out.pieces.push_back(p);
     };
-    const int n = problem_.cells();
     const double begins = grid_.start.rest_length, ends = grid_.end.rest_length;
-    out.shape.nodes = nodes;
-    out.shape.middles = middles_;
-    out.shape.squares.clear();
-    for (int i = 0; i <= n; ++i) out.shape.squares.push_back(problem_.node(i, middles_));
-    if (begins > 0) add(TimePiece::rest(TimePiece::Kind::from_rest, nodes[0] - begins, begins, out.shape.squares.front()));
-    for (std::size_t c = 0; c < middles_.size(); ++c)
-        add(TimePiece::moving(nodes[c], nodes[c + 1] - nodes[c], out.shape.squares[c], middles_[c], out.shape.squares[c + 1]));
+    RunShape& shape = out.shape;
+    shape.nodes = {nodes.front()};
+    shape.squares = {problem_.node(0, middles_)};
+    shape.middles.clear();
+    if (begins > 0) add(TimePiece::rest(TimePiece::Kind::from_rest, task_.from, begins, shape.squares.front()));
+    double whole = 0;
+    for (std::size_t c = 0; c < middles_.size(); ++c) whole += (nodes[c + 1] - nodes[c]) / std::sqrt(middles_[c]);
+    const double longest = std::max(longest_piece, whole / most_parts);
+    for (std::size_t c = 0; c < middles_.size(); ++c) {
+        const double length = nodes[c + 1] - nodes[c], last = problem_.node(static_cast<int>(c) + 1, middles_);
+        double middle = middles_[c];
+        // A stretch begins between pieces: a long one is cut, so that nobody who wants to stand waits for its end. The same v2, by de Casteljau.
+        const double cuts = std::floor(TimePiece::moving(nodes[c], length, shape.squares.back(), middle, last).duration / longest);
+        const auto parts = static_cast<int>(std::min(cuts, most_parts)) + 1;
+        for (int k = 0; k < parts; ++k) {
+            const double from = shape.nodes.back(), first = shape.squares.back();
+            const double to = k + 1 == parts ? nodes[c + 1] : nodes[c] + length * (k + 1) / parts, t = 1.0 / (parts - k);
+            const double one = (1 - t) * first + t * middle, two = (1 - t) * middle + t * last;
+            const double cut = k + 1 == parts ? last : (1 - t) * one + t * two, own = k + 1 == parts ? middle : one;
+            add(TimePiece::moving(from, to - from, first, own, cut));
+            shape.nodes.push_back(to);
+            shape.squares.push_back(cut);
+            shape.middles.push_back(own);
+            middle = two;
+        }
+    }
     add(TimePiece::rest(TimePiece::Kind::to_rest, nodes.back(), ends, out.shape.squares.back()));
     out.duration = time;
-    out.shape.end = nodes.back() + ends;
+    out.shape.end = task_.to;
     out.shape.velocity_factor = task_.velocity_factor;
     out.shape.coarse = grid_.coarse;
 }
@@ -341,7 +373,7 @@ bool RunPlanner::sweep(SpeedGuess guess, RunPlan& out) {
             while (last < n && (last < stays + look_ahead || grid_.nodes[static_cast<std::size_t>(last)] < reach)) ++last;
             if (n - last < window / 2) last = n;
         }
-        if (!solve({first, last}, guess, this, out)) return false;
+        if (!solve({first, last}, first == 0 || guess != SpeedGuess::outside ? guess : SpeedGuess::inside, this, out)) return false;
         first = last == n ? n : stays;
     }
     return true;
@@ -372,7 +404,7 @@ bool RunPlanner::mend(RunPlan& out) {
         }
         // What is beside holds it there: all together. From rest a little slower is inside everything.
         if (from_rest()) problem_.come_inside(middles_, 0.97);
-        if (!sweep(from_rest() ? SpeedGuess::near : SpeedGuess::rough, out)) return false;
+        if (!sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out)) return false;
         (void)verify({0, problem_.cells()});
     }
     return beyond_.empty();
@@ -397,7 +429,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     }
     uses_.assign(middles_.size(), {});
     ++out.rounds;
-    const bool solved = sweep(SpeedGuess::rough, out);
+    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out);
     out.use = verify({0, problem_.cells()});
     out.found = solved && mend(out);
     LimitUse use;

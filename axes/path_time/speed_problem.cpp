@@ -182,6 +182,7 @@ void SpeedProblem::look_at_squares(const CellRange& range) {
 /// what is inside all true bounds once stays there.
 void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
     feasible_ = true;
+    soft_beyond_ = 0;
     each_place(range, [&](Place& p, std::size_t c) {
         const double d0 = d_[c], d1 = d_[c + 1], d2 = d_[c + 2];
         const auto look = [&](Pair& x, double size) {
@@ -194,7 +195,8 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
                 if (room == Room::less) bound = std::min(bound, before);
                 if (room == Room::half) bound = std::max(limit, used + 0.5 * (before - used));
                 x.bound[lane] = bound;
-                if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && x.bound[lane] <= limit;
+                if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && bound <= limit;
+                else soft_beyond_ += bound / limit - 1;
                 const double inverse = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
                 x.z[lane] *= inverse / x.inverse[lane];  // as central as before
                 x.inverse[lane] = inverse;
@@ -395,34 +397,35 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
         sides += 2 * (p.plain_count + p.jerk_count);
     });
     scale_ = 1 / total;
-    relax(range, Room::first, guess == SpeedGuess::rough ? room_beyond : room_near);
+    const bool far = guess == SpeedGuess::outside, inside = guess == SpeedGuess::inside;
+    relax(range, Room::first, far ? room_beyond : inside ? little_room : room_near);
     const auto finish = [&] { std::copy(d_.begin() + range.first + 1, d_.begin() + range.last + 1, d.begin() + range.first); };
     // While something is relaxed, being inside counts for more than being fast.
-    const bool rough = guess == SpeedGuess::rough;
     const auto come_in = [&] {
-        double mu = (rough ? inside_first : inside_near) / sides;
+        double mu = (far ? inside_first : inside_near) / sides;
         center(range, mu);
-        for (int i = 0; i < (rough ? steps_inside : steps_inside_near) && !feasible_; ++i) {
+        // Soft caps are come back to as long as there is something to gain.
+        double soft = soft_beyond_;
+        for (int i = 0, idle = 0; i < (far ? steps_inside : steps_inside_near) && (!feasible_ || (soft_beyond_ > 0 && idle < 6)); ++i) {
             ++outcome.steps;
             assemble(range, mu);
             if (!factor_and_solve(range)) return false;
             const double step = measure_step(range);
             (void)take_step(range, mu, step);
-            relax(range, rough ? Room::less : Room::half, room_beyond);
-            if (step > 0.9) mu *= 3;  // it is central, and still outside: further from all bounds
+            relax(range, far ? Room::less : Room::half, room_beyond);
+            idle = soft_beyond_ < 0.999 * soft ? 0 : idle + 1;
+            soft = soft_beyond_;
+            if (step > 0.9 && !feasible_ && !far) mu *= 3;  // it is central, and still outside: further from all bounds
         }
         return feasible_;
     };
     if (range.first < range.last) {
-        if (!feasible_ && !come_in()) {
-            finish();
-            return outcome;
-        }
-        double mu = (rough ? 0.1 : 0.01) / sides;
+        if (!inside && (!feasible_ || soft_beyond_ > 0) && !come_in()) return outcome;
+        double mu = (guess == SpeedGuess::near ? 0.01 : 0.1) / sides;
         center(range, mu);
         for (const int most = outcome.steps + max_steps; outcome.steps < most && !outcome.settled;) {
             ++outcome.steps;
-            if (!feasible_) relax(range, Room::half, little_room);
+            if (!feasible_ || soft_beyond_ > 0) relax(range, Room::half, little_room);
             assemble(range, mu);
             if (!factor_and_solve(range)) break;
             const double step = measure_step(range), gap = take_step(range, mu, step);

@@ -35,8 +35,9 @@ struct CellShare {
     double velocity, acceleration, jerk;
 };
 
-/// How near the beginning of the search is to its end: it says how carefully the search starts.
-enum class SpeedGuess : std::uint8_t { rough, near };
+/// Where a search begins: inside all limits or nearly, and far from the best; outside of some by little, and near the best; outside by much. From
+/// outside it first comes in; from nearly inside it comes in on the way, or not: who looks at the end sees.
+enum class SpeedGuess : std::uint8_t { inside, near, outside };
 
 struct SpeedOutcome {
     bool feasible = false;  ///< every row holds strictly, but for soft caps
@@ -79,7 +80,7 @@ public:
 
     /// From rest: scales all of v2 down until every row holds, and `room` is left.
     void come_inside(std::vector<double>& middles, double room);
-    /// The cells of the range from `middles` (> 0, feasible or not) to the best; the others stay as they are.
+    /// The cells of the range from `middles` (> 0, feasible or not) to the best; the others stay as they are. All do where no way in is found.
     SpeedOutcome solve(std::vector<double>& middles, const CellRange& range, SpeedGuess guess, SpeedWitness* witness);
 
     [[nodiscard]] int cells() const noexcept { return static_cast<int>(lengths_.size()); }
@@ -139,6 +140,7 @@ private:
     double scale_ = 1;      // of the goal
     double decrement_ = 0;  // Newton's: what a step promises
     bool feasible_ = false;
+    double soft_beyond_ = 0;  // how far soft caps are relaxed, all together
 };
 
 }  // namespace taktwerk::axes
