@@ -8,13 +8,17 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double growth = 0.25;      // of a cell's size per way from a smaller one
-constexpr int stations_between = 8;  // of a span that bends
-constexpr int most_of_run = 24;      // a cell is at most this part of a run
-constexpr double rest_share = 0.2;   // of the way with jerk that the piece at rest takes
+constexpr double growth = 0.25;        // of a cell's size per way from a smaller one
+constexpr int stations_between = 8;    // of a span that bends
+constexpr int most_of_run = 72;        // a cell is at most this part of a run
+constexpr int most_of_bent_run = 144;  // where it bends
+constexpr double rest_share = 0.2;     // of the way with jerk that the piece at rest takes
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
 constexpr double fewer = 2.7;
+// A run of few spans costs little however finely it is planned.
+constexpr std::size_t short_run = 24;
+constexpr double more = 0.4;
 
 }  // namespace
 
@@ -37,7 +41,7 @@ void CellGrid::add_stations(double largest) {
     stations_.clear();
     sizes_.clear();
     bends_.clear();
-    const double fineness = coarse ? fewer : 1;
+    const double fineness = coarse ? fewer : breaks.size() > short_run ? 1 : more;
     const auto feature = [&](double s, CurveSide side) { return fineness * curve_->feature(s, side); };
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
         const double a = breaks[i], length = breaks[i + 1] - a;
@@ -59,7 +63,7 @@ void CellGrid::add_stations(double largest) {
                 for (const double part : {0.2, 0.4, 0.6, 0.8}) least = std::min(least, feature(s - part * gap, CurveSide::after));
             else if (between > 1) least = std::min(least, feature(s - 0.5 * gap, CurveSide::after));
             sizes_.back() = std::min(sizes_.back(), std::max(least, sizes_.back() / 16));
-            bends_.push_back(middle < unlimited ? 1 : 0);
+            bends_.push_back(between > 1 ? Bends::much : middle < unlimited ? Bends::little : Bends::not_at_all);
             stations_.push_back(s);
             sizes_.push_back(least);
         }
@@ -71,9 +75,10 @@ double CellGrid::size_at(double s, std::size_t& station) const {
     while (station + 2 < stations_.size() && stations_[station + 1] <= s) ++station;
     const double before = sizes_[station] + growth * (s - stations_[station]),
                  behind = sizes_[station + 1] + growth * (stations_[station + 1] - s);
-    // On a line as the neighbours allow it to grow; where it bends, not beyond what both places say.
-    const double straight = std::min({before, behind, (stations_.back() - stations_.front()) / most_of_run});
-    return bends_[station] != 0 ? std::min(straight, std::max(sizes_[station], sizes_[station + 1])) : straight;
+    // On a line, or one that bends little over all of it, as the neighbours allow it to grow; else not beyond what both places say.
+    const double whole = stations_.back() - stations_.front();
+    const double straight = std::min({before, behind, whole / (bends_[station] == Bends::not_at_all ? most_of_run : most_of_bent_run)});
+    return bends_[station] == Bends::much ? std::min(straight, std::max(sizes_[station], sizes_[station + 1])) : straight;
 }
 
 void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, Grain grain) {

@@ -40,7 +40,8 @@ private:
 
     const TimedCurve* curve_ = nullptr;
     std::vector<double> stations_, sizes_;
-    std::vector<unsigned char> bends_;  // behind the station the curve bends
+    enum class Bends : std::uint8_t { not_at_all, little, much };
+    std::vector<Bends> bends_;  // the curve behind the station
 };
 
 }  // namespace taktwerk::axes

@@ -196,10 +196,11 @@ void RunPlanner::take_over(const RunShape& former) {
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
-    // A lowered velocity factor: braking to what it allows, as soon as what is left of the acceleration has gone.
+    // A lowered velocity factor, a nearer end: braking to what is allowed, as soon as what is left of the acceleration has gone.
     const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
     const double ramp = task_.velocity * (std::max(task_.acceleration, 0.0) + l.deceleration) / l.jerk;
-    double brakes = task_.velocity_factor < former.velocity_factor ? task_.velocity * task_.velocity : unlimited;
+    const bool slower = task_.velocity_factor < former.velocity_factor || task_.to < former.end - 1e-9 * whole;
+    double brakes = slower ? task_.velocity * task_.velocity : unlimited;
     first_window_ = 0;
     for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
         const double first = former_square(grid_.nodes[i]), middle = former_square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2),
