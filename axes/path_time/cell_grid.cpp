@@ -8,11 +8,11 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double growth = 0.25;        // of a cell's size per way from a smaller one
-constexpr int stations_between = 8;    // of a span that bends
-constexpr int most_of_run = 72;        // a cell is at most this part of a run
-constexpr int most_of_bent_run = 144;  // where it bends
-constexpr double rest_share = 0.2;     // of the way with jerk that the piece at rest takes
+constexpr double growth = 0.25;      // of a cell's size per way from a smaller one
+constexpr int stations_between = 8;  // of a span that bends
+// A cell is at most this part of a run; of one where it bends; of one of many spans.
+constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
+constexpr double rest_share = 0.2;  // of the way with jerk that the piece at rest takes
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
 constexpr double fewer = 2.7;
@@ -77,7 +77,10 @@ double CellGrid::size_at(double s, std::size_t& station) const {
                  behind = sizes_[station + 1] + growth * (stations_[station + 1] - s);
     // On a line, or one that bends little over all of it, as the neighbours allow it to grow; else not beyond what both places say.
     const double whole = stations_.back() - stations_.front();
-    const double straight = std::min({before, behind, whole / (bends_[station] == Bends::not_at_all ? most_of_run : most_of_bent_run)});
+    const double straight = std::min({before, behind,
+                                      whole / (coarse                                 ? most_of_coarse_run
+                                               : bends_[station] == Bends::not_at_all ? most_of_run
+                                                                                      : most_of_bent_run)});
     return bends_[station] == Bends::much ? std::min(straight, std::max(sizes_[station], sizes_[station + 1])) : straight;
 }
 
@@ -101,7 +104,7 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
-    add_stations(whole / most_of_run);
+    add_stations(whole / (coarse ? most_of_coarse_run : most_of_run));
     // A quadratic with this beginning has to stay positive over the first cell.
     if (!from_rest && start.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start.square / -start.slope);
     if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start.rest_length);

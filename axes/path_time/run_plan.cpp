@@ -359,6 +359,9 @@ void RunPlanner::make_pieces(RunPlan& out) const {
 bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
     const SpeedOutcome outcome = problem_.solve(middles_, range, guess, witness);
     out.steps += outcome.steps;
+    if (!outcome.soft_open || guess == SpeedGuess::near) return outcome.feasible;
+    // Down to a lowered velocity factor as far as there is a way: once more, from near it.
+    out.steps += problem_.solve(middles_, range, SpeedGuess::near, nullptr).steps;
     return outcome.feasible;
 }
 

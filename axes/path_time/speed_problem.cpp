@@ -444,6 +444,7 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
         }
     }
     finish();
+    outcome.soft_open = soft_beyond_ > 0;
     outcome.feasible = true;
     return outcome;
 }

@@ -40,8 +40,9 @@ struct CellShare {
 enum class SpeedGuess : std::uint8_t { inside, near, outside };
 
 struct SpeedOutcome {
-    bool feasible = false;  ///< every row holds strictly, but for soft caps
-    bool settled = false;   ///< and nothing more is to be had
+    bool feasible = false;   ///< every row holds strictly, but for soft caps
+    bool settled = false;    ///< and nothing more is to be had
+    bool soft_open = false;  ///< something is above a soft cap
     int steps = 0;
 };
 
