@@ -9,6 +9,8 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr double growth = 0.25;      // of a cell's size per way from a smaller one
+constexpr int deepest = 12;          // halvings of a cell
+constexpr int probes = 15;           // for a narrow place in a span
 constexpr int stations_between = 8;  // of a span that bends
 // A cell is at most this part of a run; of one where it bends; of one of many spans.
 constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
@@ -54,7 +56,10 @@ void CellGrid::add_stations(double largest) {
             sizes_.back() = std::min(sizes_.back(), begins);
         }
         // Where it bends much, narrow places are looked for between the stations as well.
-        const bool sharp = middle < length / 8;
+        double narrowest = middle;
+        if (middle < length)
+            for (int k = 1; k < probes; ++k) narrowest = std::min(narrowest, feature(a + length * k / probes, CurveSide::after));
+        const bool sharp = narrowest < length / 8;
         const int between = middle < length ? (sharp ? 2 * stations_between : stations_between) : 1;
         for (int k = 1; k <= between; ++k) {
             const double s = k == between ? breaks[i + 1] : a + length * k / between, gap = length / between;
@@ -112,6 +117,28 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     add_nodes();
 }
 
+/// Cells in whose ends the curve bends more sharply than at any station are halved until they fit.
+void CellGrid::split_at_narrow_places() {
+    std::vector<double> split;
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+        split.push_back(nodes[i]);
+        for (int depth = 0; depth < deepest && too_long(split.back(), nodes[i + 1]);) {
+            double to = nodes[i + 1];
+            for (; depth < deepest && too_long(split.back(), to); ++depth) to = (split.back() + to) / 2;
+            split.push_back(to);
+        }
+    }
+    split.push_back(nodes.back());
+    nodes.swap(split);
+}
+
+bool CellGrid::too_long(double a, double b) const {
+    constexpr double inside = 0.03, features = 8;  // where in a cell is looked, and how many of them it may be long
+    const double length = b - a;
+    return length > features * std::min(curve_->feature(a + inside * length, CurveSide::after),
+                                        curve_->feature(b - inside * length, CurveSide::after));
+}
+
 void CellGrid::add_nodes() {
     const std::size_t last = stations_.size() - 1;
     for (std::size_t i = 1; i <= last; ++i) sizes_[i] = std::min(sizes_[i], sizes_[i - 1] + growth * (stations_[i] - stations_[i - 1]));
@@ -134,6 +161,7 @@ void CellGrid::add_nodes() {
         for (std::size_t k = first + 1; k < nodes.size(); ++k) nodes[k] = a + (nodes[k] - a) * shrink;
     }
     nodes.push_back(breaks.back() - end.rest_length);
+    split_at_narrow_places();
     // To the last bit, so that no piece ends behind the run.
     end.rest_length = breaks.back() - nodes.back();
     if (start.rest_length > 0) start.rest_length = nodes.front() - breaks.front();

@@ -37,6 +37,8 @@ private:
     void add_stations(double largest);
     [[nodiscard]] double size_at(double s, std::size_t& station) const;
     void add_nodes();
+    void split_at_narrow_places();
+    [[nodiscard]] bool too_long(double a, double b) const;
 
     const TimedCurve* curve_ = nullptr;
     std::vector<double> stations_, sizes_;

@@ -100,7 +100,7 @@ private:
     /// Who is told to stand stands, and who is told to go slower does, once that has been wished for long enough: 0.6 s from full velocity to rest
     /// and 0.2 s for its ramps are the most that random limits take, the rest is for planners that come late.
     void obey(const PathCurve& curve, const PathPlayer& player, const PathWish& wish, double known_end) {
-        constexpr int long_enough = 2000;  // cycles
+        constexpr int long_enough = 3000;  // cycles
         const bool stands = wish.motion == PathWish::Motion::stand || wish.velocity_factor <= 0;
         const bool same = wish.motion == wished_.motion && wish.velocity_factor == wished_.velocity_factor;
         wished_ = wish;
