@@ -41,6 +41,7 @@ private:
     [[nodiscard]] std::size_t span_of(double s) const noexcept;
     [[nodiscard]] PathVector tangent(double u) const noexcept;
     [[nodiscard]] PathVector bend(double u) const noexcept;
+    void square_speed() noexcept;
     [[nodiscard]] double length_between(double from, double to) const noexcept;
 
     std::array<PathVector, 6> c_{};
@@ -48,6 +49,7 @@ private:
     std::array<double, spans + 1> rates_{};        // du/ds there
     std::array<double, spans + 1> rate_slopes_{};  // d2u/ds2 there
     std::array<double, spans + 1> bends_{};        // curvature there
+    std::array<double, 9> speed2_{};               // |dx/du|^2 as a polynomial of u - 1/2
     double slowest_ = 0;
 };
 

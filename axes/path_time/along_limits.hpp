@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "axes/path_time/curve.hpp"
 
 namespace taktwerk::axes {
+
+/// Where nothing is limited.
+inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// u/s, u/s2, u/s3 of s.
 struct AlongLimits {

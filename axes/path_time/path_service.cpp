@@ -10,17 +10,25 @@ namespace {
 
 constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
 constexpr int most_stops = 12;
+constexpr double furthest_border = 0.25;  // s behind the first one
 
 }  // namespace
 
 /// The first border between pieces that the cycle does not reach before `lead`; the number of pieces where that is their end.
-int PathService::border(const StretchProgress& at) const {
+int PathService::border(const StretchProgress& at) {
     const auto& pieces = active_.plan.pieces;
     if (active_.id == 0 || at.stretch != active_.id) return static_cast<int>(pieces.size());
     double time = 0;
     std::size_t i = static_cast<std::size_t>(at.piece) + 1;
     while (i < pieces.size() && time < lead_) time += pieces[i++].duration;
-    i += static_cast<std::size_t>(skip_);
+    // Where nothing was found from the borders before, further on; but not so far that a new wish would wait for it.
+    time = 0;
+    for (std::size_t first = i; i < first + static_cast<std::size_t>(skip_) && i < pieces.size(); time += pieces[i++].duration)
+        if (time > furthest_border) {
+            skip_ = 0;
+            i = first;
+            break;
+        }
     // The last piece is the end of braking: nothing else leads from there but to rest.
     return static_cast<int>(i + 1 >= pieces.size() ? pieces.size() : i);
 }

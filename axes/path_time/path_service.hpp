@@ -53,7 +53,7 @@ private:
         RunPlan plan;
     };
 
-    [[nodiscard]] int border(const StretchProgress& at) const;
+    [[nodiscard]] int border(const StretchProgress& at);
     bool plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former);
     void send(int at_piece, const RunTask& task, bool stands);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "axes/path_time/along_limits.hpp"
 #include "core/math.hpp"
@@ -10,54 +9,16 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double growth = 0.25;       // of a cell's size per way from a smaller one
-constexpr int stations_between = 16;  // of a span that bends
-constexpr int most_of_run = 24;       // a cell is at most this part of a run
-constexpr double rest_share = 0.2;    // of the way with jerk that the piece at rest takes
-constexpr int rounds_at_most = 6;
-constexpr double slow_share = 0.02;  // of v2: what goes on where a former plan stopped
-constexpr int verified_points = 10;  // per cell
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// The greatest use of each limit by equally spaced samples, with what a parabola through three of them reaches in between.
-class PeakUse {
-public:
-    explicit PeakUse(std::size_t axes) : axes_(axes) {}
-
-    void look(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor, const PathMotion& m) {
-        const double v = m.velocity, a = m.acceleration, j = m.jerk;
-        std::size_t n = 0;
-        now_[n++] = v / (p.path.velocity * velocity_factor);
-        now_[n++] = a > 0 ? a / p.path.acceleration : -a / p.path.deceleration;
-        now_[n++] = j / p.path.jerk;
-        for (std::size_t i = 0; i < axes_; ++i) {
-            now_[n++] = p.first[i] * v / limits[i].velocity;
-            now_[n++] = (p.first[i] * a + p.second[i] * v * v) / limits[i].acceleration;
-            now_[n++] = (p.first[i] * j + 3 * p.second[i] * v * a + p.third[i] * v * v * v) / limits[i].jerk;
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            double& peak = peak_[i % 3];
-            peak = std::max(peak, std::fabs(now_[i]));
-            if (seen_ < 2) continue;
-            const double bend = now_[i] - 2 * one_[i] + two_[i], slope = now_[i] - two_[i];
-            if (std::fabs(slope) < 2.2 * std::fabs(bend)) peak = std::max(peak, std::fabs(one_[i] - slope * slope / (8 * bend)));
-        }
-        two_ = one_;
-        one_ = now_;
-        ++seen_;
-    }
-    [[nodiscard]] LimitUse use() const { return {peak_[0], peak_[1], peak_[2]}; }
-
-private:
-    using Values = std::array<double, 3 * (max_path_axes + 1)>;
-    std::size_t axes_;
-    int seen_ = 0;
-    Values now_{}, one_{}, two_{};
-    std::array<double, 3> peak_{};
-};
-
-/// What the path's velocity limit is times where nothing may cross it.
-double hard_factor(const RunTask& task) { return task.velocity > 0 ? 1 : task.velocity_factor; }
+constexpr int rounds_at_most = 9;
+constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
+constexpr int split_rounds = 4;
+constexpr double slow_share = 0.02;    // of v2: what goes on where a former plan stopped
+constexpr double longest_piece = 0.1;  // s
+constexpr double most_parts = 1500;    // that pieces are cut into
+constexpr double braking_share = 0.7;  // of the deceleration, to a lowered velocity
+constexpr int window = 192;            // cells that are solved and stay
+constexpr int look_ahead = 48;         // cells behind them that are solved with them, at least: as far as braking would reach
+constexpr int beside = 10;             // cells on both sides that are solved again with one that was beyond a limit
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -65,334 +26,283 @@ double two_thirds(double x) {
     return root * root;
 }
 
+CellShare less(const CellShare& a, const CellShare& b) {
+    return {std::min(a.velocity, b.velocity), std::min(a.acceleration, b.acceleration), std::min(a.jerk, b.jerk)};
+}
+
 }  // namespace
-
-void LimitUse::widen(const LimitUse& other) noexcept {
-    velocity = std::max(velocity, other.velocity);
-    acceleration = std::max(acceleration, other.acceleration);
-    jerk = std::max(jerk, other.jerk);
-}
-
-LimitUse limit_use(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits, double velocity_factor, const PathMotion& m) noexcept {
-    const double v = m.velocity, a = m.acceleration, j = m.jerk;
-    LimitUse use{v / (p.path.velocity * velocity_factor), std::max(a / p.path.acceleration, -a / p.path.deceleration),
-                 std::fabs(j) / p.path.jerk};
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-        use.velocity = std::max(use.velocity, std::fabs(p.first[i] * v) / limits[i].velocity);
-        use.acceleration = std::max(use.acceleration, std::fabs(p.first[i] * a + p.second[i] * v * v) / limits[i].acceleration);
-        use.jerk = std::max(use.jerk, std::fabs(p.first[i] * j + 3 * p.second[i] * v * a + p.third[i] * v * v * v) / limits[i].jerk);
-    }
-    return use;
-}
-
-void RunPlanner::add_breaks(const RunTask& task) {
-    breaks_.clear();
-    breaks_.push_back(task.from);
-    while (breaks_.back() < task.to) {
-        const double next = std::min(curve_->next_break(breaks_.back()), task.to);
-        // A sliver would be a cell of no length.
-        if (next - breaks_.back() < 1e-12 * (std::fabs(task.to) + 1e-300) || (task.to - next < 1e-9 * (task.to - task.from))) {
-            breaks_.push_back(task.to);
-            break;
-        }
-        breaks_.push_back(next);
-    }
-}
-
-/// Places with the size of cells there: all breaks, and some between them where the curve bends.
-void RunPlanner::add_stations(double largest) {
-    stations_.clear();
-    sizes_.clear();
-    for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
-        const double a = breaks_[i], length = breaks_[i + 1] - a;
-        const double begins = std::min({largest, length, curve_->feature(a, CurveSide::after)});
-        if (i == 0) {
-            stations_.push_back(a);
-            sizes_.push_back(begins);
-        } else {
-            sizes_.back() = std::min(sizes_.back(), begins);
-        }
-        const bool bends = curve_->feature(a + length / 2, CurveSide::after) < length;
-        const int between = bends ? stations_between : 1;
-        for (int k = 1; k <= between; ++k) {
-            const double s = k == between ? breaks_[i + 1] : a + length * k / between, gap = length / between;
-            double least = std::min({largest, length, curve_->feature(s, CurveSide::before)});
-            if (bends)  // a narrow place between two stations
-                for (const double part : {0.2, 0.4, 0.6, 0.8}) least = std::min(least, curve_->feature(s - part * gap, CurveSide::after));
-            sizes_.back() = std::min(sizes_.back(), std::max(least, sizes_.back() / 16));
-            stations_.push_back(s);
-            sizes_.push_back(least);
-        }
-    }
-}
-
-/// The size of a cell at s, which lies behind stations_[station] (moved on as far as needed).
-double RunPlanner::size_at(double s, std::size_t& station) const {
-    while (station + 2 < stations_.size() && stations_[station + 1] <= s) ++station;
-    const double before = sizes_[station] + growth * (s - stations_[station]),
-                 behind = sizes_[station + 1] + growth * (stations_[station + 1] - s);
-    // On a line as the neighbours allow it to grow; where it bends, not beyond what both places say.
-    const double straight = std::min({before, behind, (stations_.back() - stations_.front()) / most_of_run});
-    return curve_->feature(s, CurveSide::after) < infinite ? std::min(straight, std::max(sizes_[station], sizes_[station + 1])) : straight;
-}
-
-/// Cells follow the curve and grow away from where they are small; towards rest they shrink with the distance, as v2 ~ s^(4/3) there.
-void RunPlanner::make_nodes(const RunTask& task) {
-    add_breaks(task);
-    const double whole = task.to - task.from;
-    const auto rest_length = [&](double at, CurveSide side, double room) {
-        const AlongLimits l = along_limits(curve_->at(at, side), limits_, task.velocity_factor);
-        double way = whole / 12;  // a motion of jerk alone turns from speeding up to less of it there
-        const double a = std::min(l.acceleration, l.deceleration);
-        way = std::min(way, a * a * a / (6 * l.jerk * l.jerk));
-        way = std::min(way, std::sqrt(l.velocity / l.jerk) * l.velocity / 6);
-        return std::min(rest_share * way, room / 3);
-    };
-    const bool from_rest = task.velocity <= 0;
-    start_ = {};
-    end_ = {};
-    if (from_rest) start_.rest_length = rest_length(task.from, CurveSide::after, breaks_[1] - breaks_[0]);
-    else start_ = {0, task.velocity * task.velocity, 2 * task.acceleration};
-    end_.rest_length = rest_length(task.to, CurveSide::before, breaks_.back() - breaks_[breaks_.size() - 2]);
-
-    add_stations(whole / most_of_run);
-    // A quadratic with this beginning has to stay positive over the first cell.
-    if (!from_rest && start_.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start_.square / -start_.slope);
-    if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start_.rest_length);
-    sizes_.back() = std::min(sizes_.back(), growth * end_.rest_length);
-    const std::size_t last = stations_.size() - 1;
-    for (std::size_t i = 1; i <= last; ++i) sizes_[i] = std::min(sizes_[i], sizes_[i - 1] + growth * (stations_[i] - stations_[i - 1]));
-    for (std::size_t i = last; i-- > 0;) sizes_[i] = std::min(sizes_[i], sizes_[i + 1] + growth * (stations_[i + 1] - stations_[i]));
-
-    nodes_.clear();
-    std::size_t station = 0;
-    for (std::size_t i = 0; i + 1 < breaks_.size(); ++i) {
-        double a = breaks_[i], b = breaks_[i + 1];
-        if (i == 0) a += start_.rest_length;
-        if (i + 2 == breaks_.size()) b -= end_.rest_length;
-        const std::size_t first = nodes_.size();
-        double s = a;
-        while (s < b - 1e-9 * (b - a)) {
-            nodes_.push_back(s);
-            const double step = size_at(s, station);
-            std::size_t ahead = station;
-            s += std::min(step, size_at(std::min(s + step, b), ahead));
-        }
-        const double shrink = (b - a) / (s - a);
-        for (std::size_t k = first + 1; k < nodes_.size(); ++k) nodes_[k] = a + (nodes_[k] - a) * shrink;
-    }
-    nodes_.push_back(task.to - end_.rest_length);
-}
 
 /// The greatest v2 at the moving end of a piece at constant jerk from rest (or to rest) over `length`: velocity, acceleration and jerk on it
 /// grow with the powers 1/2, 1 and 3/2 of it, so one motion says it for all.
-double RunPlanner::rest_square(double at, double length, bool begins, double velocity_factor) const {
+double RunPlanner::rest_square(double at, double length, CurveSide side) const {
     LimitUse use;
     constexpr int samples = 24;
+    const double sign = side == CurveSide::after ? 1 : -1;
     for (int i = 0; i <= samples; ++i) {
-        const double time = static_cast<double>(i) / samples, x = time * time * time;
-        const double s = begins ? at + x * length : at - x * length;
-        const double sign = begins ? 1 : -1;
+        const double time = static_cast<double>(i) / samples, s = at + sign * time * time * time * length;
         const PathMotion m{s, time * time, sign * 2 / (3 * length) * time, 2 / (9 * length * length)};
-        use.widen(limit_use(curve_->at(s, begins ? CurveSide::after : CurveSide::before), limits_, velocity_factor, m));
+        use.widen(limit_use(curve_->at(s, side), limits_, hard_factor(), m));
     }
     // Between the samples, where the curve bends.
-    const double margin = curve_->feature(at, begins ? CurveSide::after : CurveSide::before) < infinite ? 1 - 3e-3 : 1 - 1e-4;
+    const double margin = curve_->feature(at, side) < unlimited ? 1 - 3e-3 : 1 - 1e-4;
     return margin * std::min({1 / (use.velocity * use.velocity), 1 / use.acceleration, 1 / two_thirds(use.jerk)});
 }
 
-void RunPlanner::add_cell(int cell, const RunTask& task) {
+void RunPlanner::add_cell(int cell) {
     const auto c = static_cast<std::size_t>(cell);
-    const double begin = nodes_[c], length = nodes_[c + 1] - begin;
-    const CellLimits own = cell_limits_[c];
-    for (int k = 0; k <= 2; ++k) {
-        const double x = 0.5 * k;
-        const TimedCurvePoint p = curve_->at(k == 2 ? nodes_[c + 1] : begin + x * length, k == 2 ? CurveSide::before : CurveSide::after);
-        problem_.add_point({cell, x, length * (k == 1 ? 4 : 1) / 6});
-        // With the end of the cell before, unless something jumps here.
-        // The state at the beginning, and with it the middle of the first cell, are as they are.
-        const bool given = cell == 0 && k == 0 && start_.rest_length <= 0, given_middle = cell == 0 && k == 1 && start_.rest_length <= 0;
-        const bool shared = given || (k == 0 && cell > 0 && !std::binary_search(breaks_.begin(), breaks_.end(), begin));
-        const AlongLimits l = along_limits(p, limits_, hard_factor(task));
-        const std::size_t beside =
-            k == 0 ? std::max<std::size_t>(c, 1) - 1 : std::min(c + static_cast<std::size_t>(k) / 2, cell_limits_.size() - 1);
-        const CellLimits& other = cell_limits_[beside];
-        const CellLimits share{std::min(own.velocity, other.velocity), std::min(own.acceleration, other.acceleration),
-                               std::min(own.jerk, other.jerk)};
+    const bool moving = grid_.start.rest_length <= 0, straight = check_.straight(c);
+    for (const CellPlace place : {CellPlace::begin, CellPlace::middle, CellPlace::end}) {
+        problem_.add_place(cell, place);
+        const TimedCurvePoint& p = place == CellPlace::begin    ? check_.begin(c)
+                                   : place == CellPlace::middle ? check_.middle(c)
+                                                                : check_.end(c);
+        // The state at a moving beginning, and with it the middle of the first cell, are as they are. A node's limits stand at the end of
+        // the cell before, unless something jumps there.
+        const bool given = cell == 0 && moving && place != CellPlace::end;
+        const bool shared = given || (place == CellPlace::begin && !check_.breaks_before(c));
+        const AlongLimits l = along_limits(p, limits_, hard_factor());
+        double square = l.velocity * l.velocity;
         if (!shared) {
             // Above a lowered velocity factor a moving beginning may be; it is left as soon as the limits allow.
-            const bool soft = start_.rest_length <= 0 && task.velocity_factor < 1;
-            if (soft) {
-                const double wanted = p.path.velocity * task.velocity_factor;
-                if (wanted < infinite) problem_.add_soft_cap(wanted * wanted);
-            }
-            double cap = l.velocity * share.velocity;
-            cap *= cap;
-            if (cell == 0 && k == 0 && start_.rest_length > 0)
-                cap = std::min(cap, rest_square(task.from, start_.rest_length, true, hard_factor(task)));
-            if (cell + 1 == problem_.cells() && k == 2)
-                cap = std::min(cap, rest_square(task.to, end_.rest_length, false, hard_factor(task)));
-            // The middle as Bernstein's coefficient: what it may be, v2 on the cell may be.
-            if (cap < infinite && !given_middle) k == 1 ? problem_.add_cap_on_middle(cap) : problem_.add_cap(cap);
+            const double wanted = p.path.velocity * task_.velocity_factor;
+            if (moving && task_.velocity_factor < 1 && wanted < unlimited) problem_.add_soft_cap(wanted * wanted);
+            if (cell == 0 && place == CellPlace::begin)
+                square = std::min(square, rest_square(task_.from, grid_.start.rest_length, CurveSide::after));
+            if (cell + 1 == problem_.cells() && place == CellPlace::end)
+                square = std::min(square, rest_square(task_.to, grid_.end.rest_length, CurveSide::before));
+            if (square < unlimited) problem_.add_cap(square);
         }
-        double bent = 0;  // how much of the limits the curvature takes
-        for (std::size_t i = 0; i < limits_.size(); ++i)
-            bent = std::max({bent, std::fabs(p.second[i]) * length / std::max(std::fabs(p.first[i]), 1e-9),
-                             std::fabs(p.third[i]) * length * length / std::max(std::fabs(p.first[i]), 1e-9)});
-        if (bent < 1e-9) {  // straight: one row says what all axes say
-            if (!shared && l.acceleration < infinite) {
-                const double a = l.acceleration * share.acceleration;
-                problem_.add_acceleration({0, 0.5 / a, 0, 1, l.deceleration / l.acceleration});
-            }
-            if (k != 1 && l.jerk < infinite) problem_.add_jerk({0, 0, 0.5 / (l.jerk * share.jerk), 1, 1});
+        // What lies between the nodes shows when all is looked at.
+        if (place == CellPlace::middle && (straight || grid_.coarse)) continue;
+        if (straight) {  // one row says what all axes say
+            if (!shared && l.acceleration < unlimited)
+                problem_.add_acceleration({0, 0.5 / l.acceleration, 0, 1, l.deceleration / l.acceleration});
+            if (l.jerk < unlimited) problem_.add_jerk({0, 0, 0.5 / l.jerk, 1, 1});
             continue;
         }
+        const double most = std::max(p.path.acceleration, p.path.deceleration);
         for (std::size_t i = 0; i < limits_.size(); ++i) {
-            const double a = limits_[i].acceleration * share.acceleration, j = limits_[i].jerk * share.jerk;
-            if (!shared) problem_.add_acceleration({p.second[i] / a, 0.5 * p.first[i] / a, 0, 1, 1});
-            problem_.add_jerk({p.third[i] / j, 1.5 * p.second[i] / j, 0.5 * p.first[i] / j, 1, 1});
+            // An axis that the path's own limits keep inside its own needs no rows.
+            const double one = std::fabs(p.first[i]), two = std::fabs(p.second[i]), three = std::fabs(p.third[i]);
+            if (one <= 0 && two <= 0 && three <= 0) continue;
+            const double a = limits_[i].acceleration, j = limits_[i].jerk;
+            if (!shared && !(two * square + one * most < 0.999 * a)) problem_.add_acceleration({p.second[i] / a, 0.5 * p.first[i] / a, 0});
+            if (!((three * square + 3 * two * most) * std::sqrt(square) + one * p.path.jerk < 0.999 * j))
+                problem_.add_jerk({p.third[i] / j, 1.5 * p.second[i] / j, 0.5 * p.first[i] / j});
         }
-        if (!shared && p.path.acceleration < infinite)
-            problem_.add_acceleration(
-                {0, 0.5 / (p.path.acceleration * share.acceleration), 0, 1, p.path.deceleration / p.path.acceleration});
-        if (p.path.jerk < infinite) problem_.add_jerk({0, 0, 0.5 / (p.path.jerk * share.jerk), 1, 1});
+        if (!shared && p.path.acceleration < unlimited)
+            problem_.add_acceleration({0, 0.5 / p.path.acceleration, 0, 1, p.path.deceleration / p.path.acceleration});
+        if (p.path.jerk < unlimited) problem_.add_jerk({0, 0, 0.5 / p.path.jerk, 1, 1});
     }
 }
 
-void RunPlanner::make_problem(const RunTask& task) {
-    problem_.begin(nodes_, start_, end_);
-    for (int i = 0; i < problem_.cells(); ++i) add_cell(i, task);
+void RunPlanner::make_problem() {
+    check_.sample(*curve_, limits_, grid_.nodes, grid_.breaks);
+    problem_.begin(grid_.nodes, grid_.start, grid_.end, untouched);
+    for (int i = 0; i < problem_.cells(); ++i) add_cell(i);
+    for (int i = 0; i < problem_.cells(); ++i) {
+        const CellShare& share = shares_[static_cast<std::size_t>(i)];
+        if (share.velocity < untouched.velocity || share.acceleration < untouched.acceleration || share.jerk < untouched.jerk)
+            push_share(i);
+    }
+}
+
+/// What the cell may use, told to all places that it has a part of.
+void RunPlanner::push_share(int cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    const CellShare& own = shares_[c];
+    const CellShare first = cell > 0 ? less(own, shares_[c - 1]) : own;
+    const CellShare last = c + 1 < shares_.size() ? less(own, shares_[c + 1]) : own;
+    problem_.share(cell, CellPlace::begin, first);
+    problem_.share(cell, CellPlace::middle, own);
+    problem_.share(cell, CellPlace::end, last);
+    if (cell > 0) problem_.share(cell - 1, CellPlace::end, first);
+    if (c + 1 < shares_.size()) problem_.share(cell + 1, CellPlace::begin, last);
 }
 
 /// Velocities without jerk, from both ends, lowered: a beginning from which the limits can be left alone.
-void RunPlanner::first_guess(const RunTask& task) {
-    const std::size_t n = nodes_.size() - 1;
+void RunPlanner::first_guess() {
+    const auto& nodes = grid_.nodes;
+    const std::size_t n = nodes.size() - 1;
+    const double start_rest = grid_.start.rest_length, end_rest = grid_.end.rest_length;
     middles_.assign(n, 0);
+    reach_.resize(n);
+    std::vector<double> deceleration(n);
     for (std::size_t i = 0; i < n; ++i) {
-        const double s = (nodes_[i] + nodes_[i + 1]) / 2;
-        const TimedCurvePoint p = curve_->at(s, CurveSide::after);
-        const AlongLimits l = along_limits(p, limits_, task.velocity_factor);
+        const double s = (nodes[i] + nodes[i + 1]) / 2;
+        const TimedCurvePoint& p = check_.middle(i);
+        const AlongLimits l = along_limits(p, limits_, task_.velocity_factor);
+        deceleration[i] = l.deceleration;
+        reach_[i] = l.deceleration / (2 * l.jerk);
         double cap = l.velocity * l.velocity;
-        for (std::size_t k = 0; k < limits_.size(); ++k) {
-            cap = std::min(cap, limits_[k].acceleration / std::max(std::fabs(p.second[k]), 1e-300));
-            cap = std::min(cap, two_thirds(limits_[k].jerk / std::max(std::fabs(p.third[k]), 1e-300)));
-        }
+        for (const TimedCurvePoint* at : {&check_.begin(i), &p, &check_.end(i)})
+            for (std::size_t k = 0; k < limits_.size(); ++k) {
+                const double second = std::fabs(at->second[k]), third = std::fabs(at->third[k]);
+                if (second * cap > limits_[k].acceleration) cap = limits_[k].acceleration / second;
+                if (third * third * cap * cap * cap > limits_[k].jerk * limits_[k].jerk) cap = two_thirds(limits_[k].jerk / third);
+            }
         // at constant jerk from rest: v^3 = 4.5 j s^2
-        if (start_.rest_length > 0) cap = std::min(cap, two_thirds(4.5 * l.jerk * (s - task.from) * (s - task.from)));
-        cap = std::min(cap, two_thirds(4.5 * l.jerk * (task.to - s) * (task.to - s)));
+        const auto from_rest = [&](double way) {
+            const double cube = 4.5 * l.jerk * way * way;
+            if (cube * cube < cap * cap * cap) cap = two_thirds(cube);
+        };
+        if (start_rest > 0) from_rest(s - task_.from);
+        from_rest(task_.to - s);
         const double before = i > 0 ? middles_[i - 1] : 0;
-        const double way = i > 0 ? (nodes_[i + 1] - nodes_[i - 1]) / 2 : (nodes_[1] - nodes_[0]) / 2 + start_.rest_length;
-        cap = std::min(cap, before + 1.6 * l.acceleration * way);
-        middles_[i] = cap;
+        const double way = i > 0 ? (nodes[i + 1] - nodes[i - 1]) / 2 : (nodes[1] - nodes[0]) / 2 + start_rest;
+        middles_[i] = std::min(cap, before + 1.6 * l.acceleration * way);
     }
     for (std::size_t i = n; i-- > 0;) {
-        const double s = (nodes_[i] + nodes_[i + 1]) / 2;
-        const AlongLimits l = along_limits(curve_->at(s, CurveSide::after), limits_, task.velocity_factor);
         const double behind = i + 1 < n ? middles_[i + 1] : 0;
-        const double way = i + 1 < n ? (nodes_[i + 2] - nodes_[i]) / 2 : (nodes_[n] - nodes_[n - 1]) / 2 + end_.rest_length;
-        middles_[i] = std::min(middles_[i], behind + 1.6 * l.deceleration * way);
+        const double way = i + 1 < n ? (nodes[i + 2] - nodes[i]) / 2 : (nodes[n] - nodes[n - 1]) / 2 + end_rest;
+        middles_[i] = std::min(middles_[i], behind + 1.6 * deceleration[i] * way);
     }
-    for (double& m : middles_) m *= 0.5;
+    for (std::size_t i = 0; i < n; ++i) {
+        reach_[i] = middles_[i] / (2 * deceleration[i]) + std::sqrt(middles_[i]) * reach_[i];
+        middles_[i] *= 0.5;
+    }
 }
 
 /// From a moving state: the cells of the former plan as long as it does not brake for its end for good, and its v2 as the first guess. Where
 /// that comes near rest but the path goes on, a slow motion that keeps every limit goes on instead.
-void RunPlanner::take_over(const RunTask& task, const RunShape& former) {
-    const auto begin = std::lower_bound(former.nodes.begin(), former.nodes.end(), task.from - 1e-12 * std::fabs(task.to));
+void RunPlanner::take_over(const RunShape& former) {
+    const double whole = task_.to - task_.from, hair = 1e-12 * std::fabs(task_.to);
+    const auto begin = std::lower_bound(former.nodes.begin(), former.nodes.end(), task_.from - hair);
     const auto from = static_cast<std::size_t>(begin - former.nodes.begin());
     if (begin == former.nodes.end()) return;
-    const bool same_end = std::fabs(task.to - former.end) < 1e-9 * (task.to - task.from);
+    const bool same_end = std::fabs(task_.to - former.end) < 1e-9 * whole;
     std::size_t kept = former.nodes.size() - 1;
     if (!same_end) {
-        while (kept > from && (former.squares[kept] <= former.squares[kept - 1] || former.nodes[kept] > nodes_.back())) --kept;
+        while (kept > from && (former.squares[kept] <= former.squares[kept - 1] || former.nodes[kept] > grid_.nodes.back())) --kept;
     } else {
-        end_.rest_length = task.to - former.nodes.back();
+        grid_.end.rest_length = task_.to - former.nodes.back();
     }
     std::vector<double> nodes(former.nodes.begin() + static_cast<std::ptrdiff_t>(from),
                               former.nodes.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
-    nodes.front() = task.from;
+    nodes.front() = task_.from;
     if (!same_end)
-        for (const double node : nodes_)
-            if (node > nodes.back() + 1e-9 * (task.to - task.from)) nodes.push_back(node);
-    nodes_.swap(nodes);
-    cell_limits_.assign(nodes_.size() - 1, untouched);
+        for (const double node : grid_.nodes)
+            if (node > nodes.back() + 1e-9 * whole) nodes.push_back(node);
+    grid_.nodes.swap(nodes);
+    shares_.assign(grid_.nodes.size() - 1, untouched);
+    make_problem();
 
     // Slow enough for everything, as from rest.
-    first_guess(task);
+    first_guess();
     std::size_t cell = from;
     const auto former_square = [&](double s) {
         while (cell + 1 < former.middles.size() && former.nodes[cell + 1] < s) ++cell;
-        if (s > former.nodes.back() + 1e-12 * std::fabs(task.to)) return 0.0;
+        if (s > former.nodes.back() + hair) return 0.0;
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
-    for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
-        const double first = former_square(nodes_[i]), middle = former_square((nodes_[i] + nodes_[i + 1]) / 2),
-                     last = former_square(nodes_[i + 1]);
-        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+    // A lowered velocity factor, a nearer end: braking to what is allowed, as soon as what is left of the acceleration has gone.
+    const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
+    const double ramp = task_.velocity * (std::max(task_.acceleration, 0.0) + l.deceleration) / l.jerk;
+    const bool slower = task_.velocity_factor < former.velocity_factor || task_.to < former.end - 1e-9 * whole;
+    double brakes = slower ? task_.velocity * task_.velocity : unlimited;
+    first_window_ = 0;
+    for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
+        const double first = former_square(grid_.nodes[i]), middle = former_square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2),
+                     last = former_square(grid_.nodes[i + 1]);
+        if (grid_.nodes[i] > task_.from + ramp)
+            brakes -= braking_share * 2 * along_limits(check_.middle(i), limits_, 1).deceleration * (grid_.nodes[i + 1] - grid_.nodes[i]);
+        const double lowered = std::max(brakes, middles_[i]);
+        middles_[i] = std::min(std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]), lowered);
+        if (middle > 0) first_window_ = static_cast<int>(i) + 1;
     }
 }
 
-LimitUse RunPlanner::use_of_cell(int cell, const RunTask& task) const {
-    const auto c = static_cast<std::size_t>(cell);
-    const double begin = nodes_[c], length = nodes_[c + 1] - begin;
-    const double first = problem_.node(cell, middles_), middle = middles_[c], last = problem_.node(cell + 1, middles_);
-    PeakUse peaks(limits_.size());
-    for (int k = 0; k <= verified_points; ++k) {
-        const double x = static_cast<double>(k) / verified_points, y = 1 - x;
-        const double square = y * y * first + 2 * x * y * middle + x * x * last;
-        PathMotion m;
-        m.s = k == verified_points ? nodes_[c + 1] : begin + x * length;
-        m.velocity = std::sqrt(square);
-        m.acceleration = (y * (middle - first) + x * (last - middle)) / length;
-        m.jerk = (first - 2 * middle + last) / (length * length) * m.velocity;
-        peaks.look(curve_->at(m.s, k == verified_points ? CurveSide::before : CurveSide::after), limits_, hard_factor(task), m);
-    }
-    return peaks.use();
+CellUse RunPlanner::use_of_cell(std::size_t c) {
+    const auto cell = static_cast<int>(c);
+    return check_.use(c, {problem_.node(cell, middles_), middles_[c], problem_.node(cell + 1, middles_)}, hard_factor());
 }
 
-LimitUse RunPlanner::verify(const RunTask& task, int round) {
+/// Near the end of a search: where a limit will be crossed between nodes by as much as it is used there more than at them, less is allowed at once.
+void RunPlanner::come_near(const CellRange& cells, const std::vector<double>&) {
+    constexpr double hair = 1 - 2e-4, counts = 0.5, most = 1.03;  // what is more is a matter of the cell's size
+    for (int i = cells.first; i < cells.last; ++i) {
+        const CellUse use = use_of_cell(static_cast<std::size_t>(i));
+        CellShare& share = shares_[static_cast<std::size_t>(i)];
+        const auto lower = [&](double peak, double nodes, double& part) {
+            if (nodes < counts || peak <= nodes || peak > most * nodes) return false;
+            const double now = nodes / peak * hair;
+            if (now >= part) return false;
+            part = now;
+            return true;
+        };
+        const bool a = lower(use.peak.acceleration, use.nodes.acceleration, share.acceleration);
+        const bool j = lower(use.peak.jerk, use.nodes.jerk, share.jerk);
+        const bool v = lower(use.peak.velocity, use.nodes.velocity, share.velocity);
+        if (a || j || v) push_share(i);
+    }
+}
+
+/// Looks at the cells of the range; those beyond a limit get less of it, and are remembered.
+LimitUse RunPlanner::verify(const CellRange& range) {
     LimitUse whole;
-    split_.clear();
-    for (int i = 0; i < problem_.cells(); ++i) {
-        const LimitUse use = use_of_cell(i, task);
+    for (int i = std::max(range.first, 0); i < std::min(range.last, problem_.cells()); ++i) {
+        const auto c = static_cast<std::size_t>(i);
+        const LimitUse use = use_of_cell(c).peak;
         whole.widen(use);
-        CellLimits& share = cell_limits_[static_cast<std::size_t>(i)];
-        constexpr double beyond = 1 + 1e-4;
+        uses_[c] = use;
         if (use.inside()) continue;
+        beyond_.push_back(i);
+        // Far beyond, the cell is too long for what happens in it.
+        CellShare& share = shares_[c];
+        const double most = std::max({use.velocity, use.acceleration, use.jerk}),
+                     least = std::min({share.velocity, share.acceleration, share.jerk});
+        if (splits_left_ > 0 && (most > 1.02 || least < least_share)) {
+            split_.push_back(i);
+            continue;
+        }
+        if (least < least_share) continue;  // what is left is for all to be slower
+        constexpr double beyond = 1 + 1e-4;
         if (use.velocity > 1 - 2e-6) share.velocity /= use.velocity * beyond;
         if (use.acceleration > 1 - 2e-6) share.acceleration /= use.acceleration * beyond;
         if (use.jerk > 1) share.jerk /= use.jerk * beyond;
-        if (std::max({use.velocity, use.acceleration, use.jerk}) > (round > 2 ? 1.002 : 1.02))
-            split_.push_back(static_cast<std::size_t>(i));
+        push_share(i);
     }
     return whole;
 }
 
 /// Halves the cells of split_: the same v2, with one more coefficient for each.
 void RunPlanner::split_cells() {
-    if (split_.empty()) return;
-    std::vector<double> nodes, middles;
-    std::vector<CellLimits> limits;
-    std::size_t next = 0;
-    for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
-        nodes.push_back(nodes_[i]);
-        if (next < split_.size() && split_[next] == i) {
+    std::vector<double> nodes, middles, reach;
+    std::vector<CellShare> shares;
+    std::vector<int> beyond;
+    std::size_t next = 0, look = 0;
+    const auto count = static_cast<std::size_t>(problem_.cells());
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto cell = static_cast<int>(i);
+        if (look < beyond_.size() && beyond_[look] == cell) {
+            beyond.push_back(static_cast<int>(middles.size()));
+            ++look;
+        }
+        nodes.push_back(grid_.nodes[i]);
+        if (next < split_.size() && split_[next] == cell) {
             ++next;
-            const double first = problem_.node(static_cast<int>(i), middles_), last = problem_.node(static_cast<int>(i) + 1, middles_);
-            nodes.push_back((nodes_[i] + nodes_[i + 1]) / 2);
+            const double first = problem_.node(cell, middles_), last = problem_.node(cell + 1, middles_);
+            nodes.push_back((grid_.nodes[i] + grid_.nodes[i + 1]) / 2);
             middles.push_back((first + middles_[i]) / 2);
             middles.push_back((middles_[i] + last) / 2);
-            limits.insert(limits.end(), 2, cell_limits_[i]);
+            shares.insert(shares.end(), 2, shares_[i]);
+            reach.insert(reach.end(), 2, reach_[i]);
         } else {
             middles.push_back(middles_[i]);
-            limits.push_back(cell_limits_[i]);
+            shares.push_back(shares_[i]);
+            reach.push_back(reach_[i]);
         }
     }
-    nodes.push_back(nodes_.back());
-    nodes_.swap(nodes);
+    nodes.push_back(grid_.nodes.back());
+    grid_.nodes.swap(nodes);
     middles_.swap(middles);
-    cell_limits_.swap(limits);
+    shares_.swap(shares);
+    reach_.swap(reach);
+    beyond_.swap(beyond);
+    split_.clear();
+    uses_.assign(middles_.size(), {});
+    make_problem();
 }
 
 /// What is left above a limit after all rounds is a matter of some cells; all are slowed down for it: from rest v2 may be scaled.
@@ -402,7 +312,8 @@ void RunPlanner::slow_down(const LimitUse& use) {
     for (double& middle : middles_) middle *= share;
 }
 
-void RunPlanner::make_pieces(RunPlan& out) {
+void RunPlanner::make_pieces(RunPlan& out) const {
+    const auto& nodes = grid_.nodes;
     out.pieces.clear();
     double time = 0;
     const auto add = [&](TimePiece p) {
@@ -411,54 +322,195 @@ void RunPlanner::make_pieces(RunPlan& out) {
         time += p.duration;
         out.pieces.push_back(p);
     };
-    const int n = problem_.cells();
-    if (start_.rest_length > 0)
-        add(TimePiece::rest(TimePiece::Kind::from_rest, nodes_[0] - start_.rest_length, start_.rest_length, problem_.node(0, middles_)));
-    for (int i = 0; i < n; ++i) {
-        const auto c = static_cast<std::size_t>(i);
-        add(TimePiece::moving(nodes_[c], nodes_[c + 1] - nodes_[c], problem_.node(i, middles_), middles_[c],
-                              problem_.node(i + 1, middles_)));
+    const double begins = grid_.start.rest_length, ends = grid_.end.rest_length;
+    RunShape& shape = out.shape;
+    shape.nodes = {nodes.front()};
+    shape.squares = {problem_.node(0, middles_)};
+    shape.middles.clear();
+    if (begins > 0) add(TimePiece::rest(TimePiece::Kind::from_rest, task_.from, begins, shape.squares.front()));
+    double whole = 0;
+    for (std::size_t c = 0; c < middles_.size(); ++c) whole += (nodes[c + 1] - nodes[c]) / std::sqrt(middles_[c]);
+    const double longest = std::max(longest_piece, whole / most_parts);
+    for (std::size_t c = 0; c < middles_.size(); ++c) {
+        const double length = nodes[c + 1] - nodes[c], last = problem_.node(static_cast<int>(c) + 1, middles_);
+        double middle = middles_[c];
+        // A stretch begins between pieces: a long one is cut, so that nobody who wants to stand waits for its end. The same v2, by de Casteljau.
+        const double cuts = std::floor(TimePiece::moving(nodes[c], length, shape.squares.back(), middle, last).duration / longest);
+        const auto parts = static_cast<int>(std::min(cuts, most_parts)) + 1;
+        for (int k = 0; k < parts; ++k) {
+            const double from = shape.nodes.back(), first = shape.squares.back();
+            const double to = k + 1 == parts ? nodes[c + 1] : nodes[c] + length * (k + 1) / parts, t = 1.0 / (parts - k);
+            const double one = (1 - t) * first + t * middle, two = (1 - t) * middle + t * last;
+            const double cut = k + 1 == parts ? last : (1 - t) * one + t * two, own = k + 1 == parts ? middle : one;
+            add(TimePiece::moving(from, to - from, first, own, cut));
+            shape.nodes.push_back(to);
+            shape.squares.push_back(cut);
+            shape.middles.push_back(own);
+            middle = two;
+        }
     }
-    add(TimePiece::rest(TimePiece::Kind::to_rest, nodes_.back(), end_.rest_length, problem_.node(n, middles_)));
+    add(TimePiece::rest(TimePiece::Kind::to_rest, nodes.back(), ends, out.shape.squares.back()));
     out.duration = time;
-    out.shape.end = nodes_.back() + end_.rest_length;
-    out.shape.nodes = nodes_;
-    out.shape.middles = middles_;
-    out.shape.squares.clear();
-    for (int i = 0; i <= n; ++i) out.shape.squares.push_back(problem_.node(i, middles_));
+    out.shape.end = task_.to;
+    out.shape.velocity_factor = task_.velocity_factor;
+    out.shape.coarse = grid_.coarse;
+}
+
+bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
+    const SpeedOutcome outcome = problem_.solve(middles_, range, guess, witness);
+    out.steps += outcome.steps;
+    if (!outcome.soft_open || guess == SpeedGuess::near) return outcome.feasible;
+    // Down to a lowered velocity factor as far as there is a way: once more, from near it.
+    out.steps += problem_.solve(middles_, range, SpeedGuess::near, nullptr).steps;
+    return outcome.feasible;
+}
+
+/// Window by window: each begins with what the one before it found, ends in what lies behind it as it was, and only its first part stays.
+bool RunPlanner::sweep(SpeedGuess guess, RunPlan& out) {
+    const int n = problem_.cells();
+    for (int first = 0; first < n;) {
+        int stays = std::min(first + window, n);
+        if (first == 0) stays = std::max(stays, std::min(first_window_, n));
+        int last = stays;
+        if (stays < n) {
+            const double reach = grid_.nodes[static_cast<std::size_t>(stays)] + reach_[static_cast<std::size_t>(stays)];
+            while (last < n && (last < stays + look_ahead || grid_.nodes[static_cast<std::size_t>(last)] < reach)) ++last;
+            if (n - last < window / 2) last = n;
+        }
+        if (!solve({first, last}, first == 0 || guess != SpeedGuess::outside ? guess : SpeedGuess::inside, this, out)) return false;
+        first = last == n ? n : stays;
+    }
+    return true;
+}
+
+/// Solves again around the cells that are beyond a limit, until none is.
+bool RunPlanner::mend(RunPlan& out) {
+    while (!beyond_.empty() && out.rounds < rounds_at_most) {
+        ++out.rounds;
+        for (std::vector<int>* cells : {&beyond_, &split_}) {  // a cell may have been looked at twice
+            std::sort(cells->begin(), cells->end());
+            cells->erase(std::unique(cells->begin(), cells->end()), cells->end());
+        }
+        if (!split_.empty()) split_cells();
+        if (splits_left_ > 0) --splits_left_;
+        std::vector<CellRange> ranges;
+        for (const int cell : beyond_) {
+            const CellRange range{std::max(cell - beside, 0), std::min(cell + beside + 1, problem_.cells())};
+            if (!ranges.empty() && range.first <= ranges.back().last + 2) ranges.back().last = range.last;
+            else ranges.push_back(range);
+        }
+        beyond_.clear();
+        bool near = true;
+        for (const CellRange& range : ranges) near = near && solve(range, SpeedGuess::near, nullptr, out);
+        if (near) {
+            for (const CellRange& range : ranges) (void)verify({range.first - 1, range.last + 1});
+            continue;
+        }
+        // What is beside holds it there: all together. From rest a little slower is inside everything.
+        if (from_rest()) problem_.come_inside(middles_, 0.97);
+        if (!sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out)) return false;
+        (void)verify({0, problem_.cells()});
+    }
+    return beyond_.empty();
+}
+
+void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* former) {
+    task_ = task;
+    out.found = false;
+    out.rounds = 0;
+    first_window_ = 0;
+    beyond_.clear();
+    split_.clear();
+    splits_left_ = split_rounds;
+    grid_.make(*curve_, limits_, task, former != nullptr && former->coarse ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
+    shares_.assign(grid_.nodes.size() - 1, untouched);
+    if (former != nullptr && !from_rest()) {
+        take_over(*former);
+    } else {
+        make_problem();
+        first_guess();
+        if (from_rest()) problem_.come_inside(middles_, 0.8);
+    }
+    uses_.assign(middles_.size(), {});
+    ++out.rounds;
+    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out);
+    out.use = verify({0, problem_.cells()});
+    out.found = solved && mend(out);
+    LimitUse use;
+    for (const LimitUse& cell : uses_) use.widen(cell);
+    if (!out.found && from_rest()) {
+        splits_left_ = 0;
+        use = verify({0, problem_.cells()});
+        slow_down(use);
+        beyond_.clear();
+        use = verify({0, problem_.cells()});
+        out.found = use.inside();
+    }
+    out.use = use;
+    out.cells = out.planned = problem_.cells();
+    make_pieces(out);
+}
+
+/// The first cell of `former` that a further end has an influence on; 0 where there is none before it.
+std::size_t RunPlanner::grows_from(const RunTask& task, const RunShape& former) const {
+    if (former.velocity_factor != task.velocity_factor || !(task.to > former.end) || former.nodes.size() < 3) return 0;
+    std::size_t brakes = former.nodes.size() - 1;
+    while (brakes > 0 && former.squares[brakes] <= former.squares[brakes - 1]) --brakes;
+    const double reach = former.end - 2.5 * (former.end - former.nodes[brakes]);
+    std::size_t kept = std::min(brakes, former.nodes.size() - std::min<std::size_t>(former.nodes.size(), look_ahead / 2));
+    while (kept > 0 && former.nodes[kept] > reach) --kept;
+    return former.nodes[kept] > task.from + 1e-9 * (task.to - task.from) ? kept : 0;
+}
+
+/// What `former` does from the task's beginning up to its node `kept`, before what was planned from there.
+void RunPlanner::keep_before(std::size_t kept, const RunTask& task, const RunShape& former, RunPlan& out) const {
+    const auto begin = std::lower_bound(former.nodes.begin(), former.nodes.end(), task.from - 1e-12 * std::fabs(task.to));
+    const std::ptrdiff_t from = begin - former.nodes.begin(), to = static_cast<std::ptrdiff_t>(kept);
+    std::vector<TimePiece> pieces;
+    double time = 0;
+    for (auto c = static_cast<std::size_t>(from); c < kept; ++c) {
+        TimePiece p = TimePiece::moving(former.nodes[c], former.nodes[c + 1] - former.nodes[c], former.squares[c], former.middles[c],
+                                        former.squares[c + 1]);
+        p.begin_time = time;
+        p.part = curve_->part_at(p.begin + p.length / 2);
+        time += p.duration;
+        pieces.push_back(p);
+    }
+    for (TimePiece p : out.pieces) {
+        p.begin_time += time;
+        pieces.push_back(p);
+    }
+    out.pieces.swap(pieces);
+    const auto put = [&](std::vector<double>& own, const std::vector<double>& before) {
+        own.insert(own.begin(), before.begin() + from, before.begin() + to);
+    };
+    put(out.shape.nodes, former.nodes);
+    put(out.shape.squares, former.squares);
+    put(out.shape.middles, former.middles);
+    out.duration += time;
+    out.cells = static_cast<int>(out.shape.middles.size());
 }
 
 void RunPlanner::plan(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
                       const RunShape* former) {
     curve_ = &curve;
     limits_ = limits;
-    out.found = false;
-    out.steps = out.rounds = 0;
-    make_nodes(task);
-    out.cells = static_cast<int>(nodes_.size()) - 1;
-    cell_limits_.assign(nodes_.size() - 1, untouched);
-    if (former != nullptr && start_.rest_length <= 0) take_over(task, *former);
-    else first_guess(task);
-    while (out.rounds < rounds_at_most && !out.found) {
-        ++out.rounds;
-        make_problem(task);
-        const SpeedOutcome outcome = problem_.solve(middles_, SpeedGoal::fastest, out.rounds == 1 ? SpeedGuess::rough : SpeedGuess::near);
-        out.steps += outcome.steps;
-        if (!outcome.feasible) {
-            out.use = verify(task, out.rounds);
-            break;
+    out.steps = 0;
+    if (former != nullptr && task.velocity > 0) {
+        const std::size_t kept = grows_from(task, *former);
+        if (kept > 0) {
+            RunTask tail = task;
+            tail.from = former->nodes[kept];
+            tail.velocity = std::sqrt(former->squares[kept]);
+            tail.acceleration = (former->middles[kept] - former->squares[kept]) / (former->nodes[kept + 1] - former->nodes[kept]);
+            plan_whole(tail, out, former);
+            if (out.found) {
+                keep_before(kept, task, *former, out);
+                return;
+            }
         }
-        out.use = verify(task, out.rounds);
-        out.found = out.use.inside();
-        if (!out.found && out.rounds < rounds_at_most) split_cells();
     }
-    out.cells = static_cast<int>(nodes_.size()) - 1;
-    if (!out.found && start_.rest_length > 0 && out.use.velocity > 0) {
-        slow_down(out.use);
-        out.use = verify(task, out.rounds);
-        out.found = out.use.inside();
-    }
-    make_pieces(out);
+    plan_whole(task, out, former);
 }
 
 }  // namespace taktwerk::axes

@@ -8,22 +8,31 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr int max_steps = 80;
-constexpr double to_the_boundary = 0.95;  // of the way that a step may go towards it
-constexpr double inside_first = 10;       // gap while a bound is relaxed: the goal counts a tenth of it
-constexpr double room_beyond = 0.1;       // of a bound that is relaxed
-constexpr double settled_gap = 3e-4;      // of the goal: what is left to gain
+constexpr int max_steps = 60;
+constexpr int steps_inside = 60, steps_inside_near = 10;  // until all bounds hold
+constexpr double to_the_boundary = 0.95;                  // of the way that a step may go towards it
+constexpr double inside_first = 10;                       // gap while a bound is relaxed: the goal counts a tenth of it
+constexpr double inside_near = 0.3;                       // the same where little is beyond a bound
+constexpr double room_near = 0.02;
+constexpr double room_beyond = 0.1;   // of a bound that is relaxed
+constexpr double hair = 1e-5;         // of a bound: what has to be left before it is drawn in
+constexpr double little_room = 2e-3;  // of one that was lowered on the way
+constexpr double settled_gap = 1e-3;  // of the goal: what is left to gain
+constexpr double off_centre = 20;     // how far a multiplier may be
+constexpr double near_gap = 2e-2;     // where it shows which limits hold back
 
 }  // namespace
 
-void SpeedProblem::begin(const std::vector<double>& nodes, const SpeedEnd& start, const SpeedEnd& end) {
+void SpeedProblem::begin(const std::vector<double>& nodes, const SpeedEnd& start, const SpeedEnd& end, const CellShare& all) {
     nodes_ = nodes;
     lengths_.clear();
     for (std::size_t i = 1; i < nodes.size(); ++i) lengths_.push_back(nodes[i] - nodes[i - 1]);
     start_ = start;
     end_ = end;
-    points_.clear();
-    rows_.clear();
+    all_ = all;
+    places_.clear();
+    plain_.clear();
+    jerk_.clear();
 }
 
 /// Node `node` through the middles around `cell`, which is the cell before or behind it.
@@ -57,289 +66,385 @@ double SpeedProblem::value(const Triple& t, int cell, const std::vector<double>&
     return sum;
 }
 
-void SpeedProblem::add_point(const SpeedPoint& at) {
-    const double x = at.x, h = lengths_[static_cast<std::size_t>(at.cell)];
-    const Triple first = node_triple(at.cell, at.cell), last = node_triple(at.cell + 1, at.cell);
-    Triple middle;
-    middle.g[1] = 1;
+void SpeedProblem::add_place(int cell, CellPlace place) {
+    const double h = lengths_[static_cast<std::size_t>(cell)], x = 0.5 * static_cast<double>(place);
+    const Triple first = node_triple(cell, cell), last = node_triple(cell + 1, cell);
     const auto mix = [&](double a, double b, double c) {
         Triple t;
-        for (int i = 0; i < 3; ++i) t.g[i] = a * first.g[i] + b * middle.g[i] + c * last.g[i];
+        for (int i = 0; i < 3; ++i) t.g[i] = a * first.g[i] + c * last.g[i];
+        t.g[1] += b;
         t.k = a * first.k + c * last.k;
         return t;
     };
-    Point p{};
-    p.cell = at.cell;
-    p.weight = at.weight;
-    p.square = mix((1 - x) * (1 - x), 2 * x * (1 - x), x * x);
-    p.slope = mix(-2 * (1 - x) / h, 2 * (1 - 2 * x) / h, 2 * x / h);
-    p.bend = mix(2 / (h * h), -4 / (h * h), 2 / (h * h));
-    p.first_row = static_cast<int>(rows_.size());
-    points_.push_back(p);
+    square_ = mix((1 - x) * (1 - x), 2 * x * (1 - x), x * x);
+    slope_ = mix(-2 * (1 - x) / h, 2 * (1 - 2 * x) / h, 2 * x / h);
+    bend_ = mix(2 / (h * h), -4 / (h * h), 2 / (h * h));
+    Place p;
+    p.square = square_;
+    p.weight = h * (place == CellPlace::middle ? 4 : 1) / 6;
+    p.plain = static_cast<int>(plain_.size());
+    p.jerk = static_cast<int>(jerk_.size());
+    places_.push_back(p);
+    half_ = false;
 }
 
-void SpeedProblem::add_row(const SpeedRow& row, Bound bound) {
-    Point& p = points_.back();
-    Row r{};
-    for (int i = 0; i < 3; ++i) r.l.g[i] = row.at * p.square.g[i] + row.slope * p.slope.g[i] + row.bend * p.bend.g[i];
-    r.l.k = row.at * p.square.k + row.slope * p.slope.k + row.bend * p.bend.k;
-    r.above = row.above;
-    r.below = row.below;
-    r.bound = bound;
-    rows_.push_back(r);
-    ++p.rows;
+SpeedProblem::Triple SpeedProblem::triple_of(const SpeedRow& row) const noexcept {
+    Triple t;
+    for (int i = 0; i < 3; ++i) t.g[i] = row.at * square_.g[i] + row.slope * slope_.g[i] + row.bend * bend_.g[i];
+    t.k = row.at * square_.k + row.slope * slope_.k + row.bend * bend_.k;
+    return t;
 }
 
-void SpeedProblem::add_cap(double square, Bound bound) { add_row({1 / square, 0, 0, 1, 0}, bound); }
-
-void SpeedProblem::add_cap_on_middle(double square) {
-    add_cap(square);
-    rows_.back().l = {{0, 1 / square, 0}, 0};
-}
-
-void SpeedProblem::look(const std::vector<double>& d) {
-    for (Point& p : points_) {
-        p.v2 = value(p.square, p.cell, d);
-        p.over_v = 1 / std::sqrt(p.v2);
-        for (int i = 0; i < p.rows; ++i) {
-            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            row.value = value(row.l, p.cell, d);
-        }
+void SpeedProblem::add_side(const Triple& l, double sign, double limit, Bound kind) {
+    if (!half_) {
+        // A side that says nothing, until another one takes its place.
+        Pair empty{};
+        empty.limit = empty.wanted = empty.bound = empty.inverse = Lanes{1, 1};
+        plain_.push_back(empty);
+        ++places_.back().plain_count;
     }
+    Pair& p = plain_.back();
+    const int lane = half_ ? 1 : 0;
+    p.g0[lane] = sign * l.g[0];
+    p.g1[lane] = sign * l.g[1];
+    p.g2[lane] = sign * l.g[2];
+    p.k[lane] = sign * l.k;
+    p.limit[lane] = limit;
+    p.wanted[lane] = limit * share_of(kind, all_);
+    p.kind[lane] = kind;
+    half_ = !half_;
+}
+
+void SpeedProblem::add_plain(const SpeedRow& row, Bound kind) {
+    // At the middle as Bernstein's coefficient: what it may be, v2 on the cell may be.
+    add_side(places_.size() % 3 == 2 ? Triple{{0, row.at, 0}, 0} : triple_of(row), 1, row.above, kind);
+}
+
+void SpeedProblem::add_acceleration(const SpeedRow& row) {
+    const Triple l = triple_of(row);
+    add_side(l, 1, row.above, Bound::acceleration);
+    add_side(l, -1, row.below, Bound::acceleration);
+}
+
+void SpeedProblem::add_jerk(const SpeedRow& row) {
+    const Triple l = triple_of(row);
+    Pair p{};
+    p.g0 = Lanes{l.g[0], -l.g[0]};
+    p.g1 = Lanes{l.g[1], -l.g[1]};
+    p.g2 = Lanes{l.g[2], -l.g[2]};
+    p.k = Lanes{l.k, -l.k};
+    p.limit = Lanes{row.above, row.below};
+    p.wanted = p.limit * all_.jerk;
+    jerk_.push_back(p);
+    ++places_.back().jerk_count;
+}
+
+double SpeedProblem::share_of(Bound kind, const CellShare& share) noexcept {
+    switch (kind) {
+        case Bound::acceleration: return share.acceleration;
+        case Bound::cap: return share.velocity * share.velocity;
+        case Bound::none:
+        case Bound::soft_cap: break;
+    }
+    return 1;
+}
+
+void SpeedProblem::share(int cell, CellPlace place, const CellShare& share) {
+    const Place& p = places_[3 * static_cast<std::size_t>(cell) + static_cast<std::size_t>(place)];
+    for (int i = 0; i < p.plain_count; ++i) {
+        Pair& pair = plain_[static_cast<std::size_t>(p.plain + i)];
+        for (int lane = 0; lane < 2; ++lane) pair.wanted[lane] = pair.limit[lane] * share_of(pair.kind[lane], share);
+    }
+    for (int i = 0; i < p.jerk_count; ++i) {
+        Pair& pair = jerk_[static_cast<std::size_t>(p.jerk + i)];
+        pair.wanted = pair.limit * share.jerk;
+    }
+}
+
+/// act(place, cell with its neighbours in d_) for all places on which a cell of the range has an influence.
+template <class Do>
+void SpeedProblem::each_place(const CellRange& range, const Do& act) {
+    const int first = std::max(range.first - 1, 0), last = std::min(range.last + 1, cells());
+    for (int c = first; c < last; ++c)
+        for (std::size_t k = 0; k < 3; ++k) act(places_[3 * static_cast<std::size_t>(c) + k], static_cast<std::size_t>(c));
+}
+
+void SpeedProblem::look_at_squares(const CellRange& range) {
+    each_place(range, [&](Place& p, std::size_t c) {
+        const double* q = p.square.g;
+        p.v2 = p.square.k + q[0] * d_[c] + q[1] * d_[c + 1] + q[2] * d_[c + 2];
+        p.over_v = 1 / std::sqrt(p.v2);
+        p.cube = p.over_v / p.v2;
+    });
 }
 
 /// Where the present v2 crosses a bound, the bound is put a little beyond it, and never further out again: so every iterate is inside, and
 /// what is inside all true bounds once stays there.
-void SpeedProblem::relax(Room room) {
+void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
     feasible_ = true;
-    for (const Point& p : points_)
-        for (int i = 0; i < p.rows; ++i) {
-            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double over_size = row.bound == Bound::over_velocity ? 1 / p.over_v : 1;
-            const auto side = [&](Side& x, double bound, double sign) {
-                const double used = sign * row.value * over_size;
-                const double wanted = used < bound * (1 - 1e-7) ? bound : used + room_beyond * std::max(bound, used);
-                x.bound = room == Room::first ? wanted : std::min(x.bound, wanted);
-                x.s = std::max((x.bound - used) / over_size, 1e-9 * x.bound / over_size);
-                if (row.bound != Bound::soft_cap) feasible_ = feasible_ && x.bound <= bound;
-            };
-            side(row.up, row.above, 1);
-            if (!one_sided(row)) side(row.down, row.below, -1);
-        }
+    soft_beyond_ = 0;
+    each_place(range, [&](Place& p, std::size_t c) {
+        const double d0 = d_[c], d1 = d_[c + 1], d2 = d_[c + 2];
+        const auto look = [&](Pair& x, double size) {
+            const Lanes value = x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2;
+            for (int lane = 0; lane < 2; ++lane) {
+                const double used = value[lane] / size, limit = x.wanted[lane];
+                const double before = std::max(x.bound[lane], limit);
+                double bound = limit;
+                if (used >= limit * (1 - hair)) bound = used + beyond * std::max(limit, used);
+                if (room == Room::less) bound = std::min(bound, before);
+                if (room == Room::half) bound = std::max(limit, used + 0.5 * (before - used));
+                x.bound[lane] = bound;
+                if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && bound <= limit;
+                else soft_beyond_ += bound / limit - 1;
+                const double inverse = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
+                x.z[lane] *= inverse / x.inverse[lane];  // as central as before
+                x.inverse[lane] = inverse;
+            }
+        };
+        for (int i = 0; i < p.plain_count; ++i) look(plain_[static_cast<std::size_t>(p.plain + i)], 1);
+        for (int i = 0; i < p.jerk_count; ++i) look(jerk_[static_cast<std::size_t>(p.jerk + i)], p.over_v);
+    });
 }
 
-/// Slacks as they are, multipliers on the central path of mu.
-void SpeedProblem::center(double mu) {
-    for (const Point& p : points_)
-        for (int i = 0; i < p.rows; ++i) {
-            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double size = row.bound == Bound::over_velocity ? p.over_v : 1;
-            const auto side = [&](Side& x, double sign) {
-                x.s = std::max(x.bound * size - sign * row.value, 1e-9 * x.bound * size);
-                x.z = mu / x.s;
-            };
-            side(row.up, 1);
-            if (!one_sided(row)) side(row.down, -1);
+/// Multipliers on the central path of mu.
+void SpeedProblem::center(const CellRange& range, double mu) {
+    each_place(range, [&](Place& p, std::size_t) {
+        for (int i = 0; i < p.plain_count; ++i) {
+            Pair& x = plain_[static_cast<std::size_t>(p.plain + i)];
+            x.z = mu * x.inverse;
         }
+        for (int i = 0; i < p.jerk_count; ++i) {
+            Pair& x = jerk_[static_cast<std::size_t>(p.jerk + i)];
+            x.z = mu * x.inverse;
+        }
+    });
 }
 
-/// The equations of one step: band_ and right_.
-void SpeedProblem::assemble(double mu, SpeedGoal goal) {
-    std::fill(band_.begin(), band_.end(), 0);
-    std::fill(right_.begin(), right_.end(), 0);
-    const int n = cells();
-    for (const Point& p : points_) {
-        double m00 = 0, m01 = 0, m02 = 0, m11 = 0, m12 = 0, m22 = 0, f0 = 0, f1 = 0, f2 = 0;
-        const auto add = [&](double g0, double g1, double g2, double weight, double force) {
-            const double w0 = weight * g0, w1 = weight * g1, w2 = weight * g2;
+/// The equations of one step: band_ (the diagonal and two above it, for every cell) and right_.
+void SpeedProblem::assemble(const CellRange& range, double mu) {
+    const int n = cells(), from = std::max(range.first - 1, 0), to = std::min(range.last + 1, n);
+    std::fill(band_.begin() + 3 * from, band_.begin() + 3 * (to + 2), 0.0);
+    std::fill(right_.begin() + from, right_.begin() + to + 2, 0.0);
+    for (int cell = from; cell < to; ++cell) {
+        const auto c = static_cast<std::size_t>(cell);
+        Lanes m00{}, m01{}, m02{}, m11{}, m12{}, m22{}, f0{}, f1{}, f2{};
+        const auto add = [&](const Lanes& g0, const Lanes& g1, const Lanes& g2, const Lanes& weight, const Lanes& force) {
+            const Lanes w0 = weight * g0, w1 = weight * g1, w2 = weight * g2;
             m00 += w0 * g0;
             m01 += w0 * g1;
             m02 += w0 * g2;
             m11 += w1 * g1;
             m12 += w1 * g2;
             m22 += w2 * g2;
-            f0 += force * g0;
-            f1 += force * g1;
-            f2 += force * g2;
+            f0 -= force * g0;
+            f1 -= force * g1;
+            f2 -= force * g2;
         };
-        const double cube = p.over_v / p.v2;  // v^-3
-        const double* q = p.square.g;
-        if (p.weight > 0) {
-            if (goal == SpeedGoal::fastest) add(q[0], q[1], q[2], 0.75 * scale_ * p.weight * cube / p.v2, 0.5 * scale_ * p.weight * cube);
-            else add(q[0], q[1], q[2], 0, -scale_ * p.weight);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Place& p = places_[3 * c + k];
+            const double* q = p.square.g;
+            const double pull = 0.5 * scale_ * p.weight * p.cube;
+            add(Lanes{q[0], 0}, Lanes{q[1], 0}, Lanes{q[2], 0}, Lanes{1.5 * pull / p.v2, 0}, Lanes{-pull, 0});
+            for (int i = 0; i < p.plain_count; ++i) {
+                const Pair& x = plain_[static_cast<std::size_t>(p.plain + i)];
+                add(x.g0, x.g1, x.g2, x.z * x.inverse, mu * x.inverse);
+            }
+            for (int i = 0; i < p.jerk_count; ++i) {
+                const Pair& x = jerk_[static_cast<std::size_t>(p.jerk + i)];
+                const Lanes bent = 0.5 * p.cube * x.bound;
+                add(x.g0 + bent * q[0], x.g1 + bent * q[1], x.g2 + bent * q[2], x.z * x.inverse, mu * x.inverse);
+            }
         }
-        for (int i = 0; i < p.rows; ++i) {
-            const Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double* l = row.l.g;
-            const auto side = [&](const Side& x, double sign) {
-                double left = x.bound - sign * row.value, bend = 0;
-                if (row.bound == Bound::over_velocity) {
-                    left = x.bound * p.over_v - sign * row.value;
-                    bend = -0.5 * x.bound * cube;
-                }
-                const double weight = x.z / x.s, force = x.z + weight * (mu / x.z - left);
-                add(bend * q[0] - sign * l[0], bend * q[1] - sign * l[1], bend * q[2] - sign * l[2], weight, force);
-            };
-            side(row.up, 1);
-            if (!one_sided(row)) side(row.down, -1);
-        }
-        const int c = p.cell;
-        double* at = &band_[static_cast<std::size_t>(3 * c)];
-        at[0] += m11;
-        right_[static_cast<std::size_t>(c)] += f1;
-        if (c > 0) {
-            at[-3] += m00;
-            at[-2] += m01;
-            right_[static_cast<std::size_t>(c - 1)] += f0;
-            if (c + 1 < n) at[-1] += m02;
-        }
-        if (c + 1 < n) {
-            at[1] += m12;
-            at[3] += m22;
-            right_[static_cast<std::size_t>(c + 1)] += f2;
-        }
+        double* at = &band_[3 * c];  // of the cell before
+        at[0] += m00[0] + m00[1];
+        at[1] += m01[0] + m01[1];
+        at[2] += m02[0] + m02[1];
+        at[3] += m11[0] + m11[1];
+        at[4] += m12[0] + m12[1];
+        at[6] += m22[0] + m22[1];
+        right_[c] += f0[0] + f0[1];
+        right_[c + 1] += f1[0] + f1[1];
+        right_[c + 2] += f2[0] + f2[1];
+    }
+    // No middle may come to 0: with all of them positive, v2 is.
+    for (auto i = static_cast<std::size_t>(range.first + 1); i <= static_cast<std::size_t>(range.last); ++i) {
+        const double over = 1 / d_[i];
+        band_[3 * i] += mu * over * over;
+        right_[i] += mu * over;
     }
 }
 
-/// L D L^T of five diagonals. The step replaces right_.
-bool SpeedProblem::factor_and_solve() {
-    const std::size_t n = right_.size();
-    if (start_.rest_length <= 0) {  // the first middle is given by the slope
-        band_[0] = 1;
-        band_[1] = band_[2] = 0;
-        right_[0] = 0;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
+/// L D L^T of five diagonals over the range; what lies beside it does not move. The step replaces right_.
+bool SpeedProblem::factor_and_solve(const CellRange& range) {
+    const auto first = static_cast<std::size_t>(range.first + 1), last = static_cast<std::size_t>(range.last + 1);
+    decrement_ = 0;
+    for (std::size_t i = first; i < last; ++i) {
         double* row = &band_[3 * i];
         if (!(row[0] > 0)) return false;
-        const double one = row[1] / row[0], two = row[2] / row[0];
-        if (i + 1 < n) {
-            row[3] -= one * row[1];
-            row[4] -= one * row[2];
-            right_[i + 1] -= one * right_[i];
-        }
-        if (i + 2 < n) {
-            row[6] -= two * row[2];
-            right_[i + 2] -= two * right_[i];
-        }
+        const double over = 1 / row[0], one = row[1] * over, two = row[2] * over, right = right_[i];
+        row[3] -= one * row[1];
+        row[4] -= one * row[2];
+        row[6] -= two * row[2];
+        right_[i + 1] -= one * right;
+        right_[i + 2] -= two * right;
+        row[0] = over;
+        decrement_ += right * right * over;
     }
-    for (std::size_t i = n; i-- > 0;) {
+    right_[first - 1] = right_[last] = right_[last + 1] = 0;
+    if (first > 1) right_[first - 2] = 0;
+    for (std::size_t i = last; i-- > first;) {
         const double* row = &band_[3 * i];
-        double sum = right_[i];
-        if (i + 1 < n) sum -= row[1] * right_[i + 1];
-        if (i + 2 < n) sum -= row[2] * right_[i + 2];
-        right_[i] = sum / row[0];
+        right_[i] = (right_[i] - row[1] * right_[i + 1] - row[2] * right_[i + 2]) * row[0];
     }
     return true;
 }
 
-/// How far v2, slacks and multipliers stay positive on the way that right_ says.
-SpeedProblem::Steps SpeedProblem::measure_step(double mu, const std::vector<double>& d) {
-    Steps steps;
-    for (std::size_t i = 0; i < d.size(); ++i)
-        if (right_[i] < -0.8 * d[i]) steps.primal = std::min(steps.primal, -0.8 * d[i] / right_[i]);
-    const auto stay = [](double now, double change, double& step) {
-        if (change < -to_the_boundary * now && change * step < -to_the_boundary * now) step = -to_the_boundary * now / change;
-    };
-    for (const Point& p : points_) {
-        const double square_move = value(p.square, p.cell, right_) - p.square.k;
-        if (square_move < -0.8 * p.v2) steps.primal = std::min(steps.primal, -0.8 * p.v2 / square_move);
-        const double cube = p.over_v / p.v2;
-        for (int i = 0; i < p.rows; ++i) {
-            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const double move = value(row.l, p.cell, right_) - row.l.k;
-            const auto side = [&](Side& x, double sign) {
-                double left = x.bound - sign * row.value, change = -sign * move;
-                if (row.bound == Bound::over_velocity) {
-                    left = x.bound * p.over_v - sign * row.value;
-                    change -= 0.5 * x.bound * cube * square_move;
-                }
-                x.ds = left - x.s + change;
-                x.dz = (mu - x.z * x.ds) / x.s - x.z;
-                stay(x.s, x.ds, steps.primal);
-                stay(x.z, x.dz, steps.dual);
-            };
-            side(row.up, 1);
-            if (!one_sided(row)) side(row.down, -1);
+/// How far v2 and what is left of the bounds stay positive on the way that right_ says.
+double SpeedProblem::measure_step(const CellRange& range) {
+    double most = 1 / 0.8, shrink = 0;  // the greatest share that something would lose
+    for (auto i = static_cast<std::size_t>(range.first + 1); i <= static_cast<std::size_t>(range.last); ++i)
+        if (-right_[i] > shrink * d_[i]) shrink = -right_[i] / d_[i];
+    Lanes loss{};
+    each_place(range, [&](Place& p, std::size_t c) {
+        const double r0 = right_[c], r1 = right_[c + 1], r2 = right_[c + 2];
+        const double* q = p.square.g;
+        const double move = q[0] * r0 + q[1] * r1 + q[2] * r2;
+        if (-move > shrink * p.v2) shrink = -move / p.v2;
+        for (int i = 0; i < p.plain_count; ++i) {
+            Pair& x = plain_[static_cast<std::size_t>(p.plain + i)];
+            x.move = (x.g0 * r0 + x.g1 * r1 + x.g2 * r2) * x.inverse;
+            loss = loss > x.move ? loss : x.move;
         }
-    }
-    return steps;
+        const double bent = 0.5 * p.cube * move;
+        for (int i = 0; i < p.jerk_count; ++i) {
+            Pair& x = jerk_[static_cast<std::size_t>(p.jerk + i)];
+            x.move = (x.g0 * r0 + x.g1 * r1 + x.g2 * r2 + bent * x.bound) * x.inverse;
+            loss = loss > x.move ? loss : x.move;
+        }
+    });
+    most = std::max({1.0, shrink * most, std::max(loss[0], loss[1]) / to_the_boundary});
+    return 1 / most;
 }
 
-double SpeedProblem::take_step(const Steps& steps, std::vector<double>& d) {
-    for (std::size_t i = 0; i < d.size(); ++i) d[i] += steps.primal * right_[i];
-    look(d);
-    double gap = 0;
-    for (const Point& p : points_)
-        for (int i = 0; i < p.rows; ++i) {
-            Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            const auto side = [&](Side& x, double sign) {
-                const double left = (row.bound == Bound::over_velocity ? x.bound * p.over_v : x.bound) - sign * row.value;
-                // A jerk's bound is convex: what the step promised is kept at least. A slack follows what is really there.
-                x.s = std::max(x.s + steps.primal * x.ds, left);
-                x.z += steps.dual * x.dz;
-                gap += x.s * x.z;
-            };
-            side(row.up, 1);
-            if (!one_sided(row)) side(row.down, -1);
+double SpeedProblem::take_step(const CellRange& range, double mu, double step) {
+    for (auto i = static_cast<std::size_t>(range.first + 1); i <= static_cast<std::size_t>(range.last); ++i) d_[i] += step * right_[i];
+    look_at_squares(range);
+    Lanes gap{};
+    // A multiplier follows Newton's step, but stays near the central path: it is but the weight that its row has in the next step.
+    const auto next = [&](Pair& x, const Lanes& left) {
+        const Lanes full = mu * x.inverse + x.z * x.move;
+        x.inverse = 1 / left;
+        const Lanes middle = mu * x.inverse, least = middle / off_centre, most = middle * off_centre;
+        x.z = full < least ? least : full > most ? most : full;
+        gap += x.z * left;
+    };
+    each_place(range, [&](Place& p, std::size_t c) {
+        const double d0 = d_[c], d1 = d_[c + 1], d2 = d_[c + 2];
+        for (int i = 0; i < p.plain_count; ++i) {
+            Pair& x = plain_[static_cast<std::size_t>(p.plain + i)];
+            next(x, x.bound - (x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2));
         }
-    return gap;
+        // A jerk's bound is convex: what the step promised is kept at least.
+        for (int i = 0; i < p.jerk_count; ++i) {
+            Pair& x = jerk_[static_cast<std::size_t>(p.jerk + i)];
+            next(x, x.bound * p.over_v - (x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2));
+        }
+    });
+    return gap[0] + gap[1];
 }
 
 /// From rest, v2 times a small number keeps every limit: velocity, acceleration and jerk go with its powers 1/2, 1 and 3/2.
-void SpeedProblem::make_feasible(std::vector<double>& d, double share) {
+void SpeedProblem::come_inside(std::vector<double>& d, double room) {
+    d_.assign(d.size() + 3, 0);
+    std::copy(d.begin(), d.end(), d_.begin() + 1);
+    const CellRange all{0, cells()};
+    look_at_squares(all);
     double most = 0;
-    for (const Point& p : points_)
-        for (int i = 0; i < p.rows; ++i) {
-            const Row& row = rows_[static_cast<std::size_t>(p.first_row + i)];
-            double use = std::max(row.value / row.above, one_sided(row) ? 0.0 : -row.value / row.below);
-            if (row.bound == Bound::over_velocity) {
-                const double root = math::cbrt(use / p.over_v);
-                use = root * root;
+    each_place(all, [&](Place& p, std::size_t c) {
+        const auto use = [&](const Pair& x) {
+            const Lanes u = (x.k + x.g0 * d_[c] + x.g1 * d_[c + 1] + x.g2 * d_[c + 2]) / x.wanted;
+            return std::max(u[0], u[1]);
+        };
+        for (int i = 0; i < p.plain_count; ++i) most = std::max(most, use(plain_[static_cast<std::size_t>(p.plain + i)]));
+        for (int i = 0; i < p.jerk_count; ++i) {
+            const double cube = use(jerk_[static_cast<std::size_t>(p.jerk + i)]) / p.over_v;
+            if (cube * cube > most * most * most) {
+                const double root = math::cbrt(cube);
+                most = root * root;
             }
-            most = std::max(most, use);
         }
-    if (most < share) return;
-    for (double& middle : d) middle *= share / most;
-    look(d);
+    });
+    if (most < room) return;
+    for (double& middle : d) middle *= room / most;
 }
 
-SpeedOutcome SpeedProblem::solve(std::vector<double>& d, SpeedGoal goal, SpeedGuess guess) {
+SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted, SpeedGuess guess, SpeedWitness* witness) {
     SpeedOutcome outcome;
-    band_.assign(3 * d.size() + 9, 0);
-    right_.assign(d.size(), 0);
-    if (moving()) d[0] = start_.square + start_.slope * lengths_[0] / 2;
-    look(d);
-    if (!moving()) make_feasible(d, guess == SpeedGuess::rough ? 0.8 : 0.97);
+    CellRange range = wanted;
+    if (moving()) {  // the first middle is given by the slope
+        d[0] = start_.square + start_.slope * lengths_[0] / 2;
+        range.first = std::max(range.first, 1);
+    }
+    band_.resize(3 * d.size() + 12);
+    right_.resize(d.size() + 4);
+    d_.assign(d.size() + 3, 0);
+    std::copy(d.begin(), d.end(), d_.begin() + 1);
+    look_at_squares(range);
     double total = 0, sides = 0;
-    for (const Point& p : points_) total += p.weight * (goal == SpeedGoal::fastest ? p.over_v : p.v2);
+    each_place(range, [&](Place& p, std::size_t) {
+        total += p.weight * p.over_v;
+        sides += 2 * (p.plain_count + p.jerk_count);
+    });
     scale_ = 1 / total;
-    for (const Row& row : rows_) sides += one_sided(row) ? 1 : 2;
-    relax(Room::first);
-    center(inside_first / sides);
+    const bool far = guess == SpeedGuess::outside, inside = guess == SpeedGuess::inside;
+    relax(range, Room::first, far ? room_beyond : inside ? little_room : room_near);
+    const auto finish = [&] { std::copy(d_.begin() + range.first + 1, d_.begin() + range.last + 1, d.begin() + range.first); };
     // While something is relaxed, being inside counts for more than being fast.
-    while (!feasible_ && outcome.steps < max_steps) {
-        ++outcome.steps;
-        const double mu = inside_first / sides;
-        assemble(mu, goal);
-        if (!factor_and_solve()) return outcome;
-        (void)take_step(measure_step(mu, d), d);
-        relax(Room::less);
+    const auto come_in = [&] {
+        double mu = (far ? inside_first : inside_near) / sides;
+        center(range, mu);
+        // Soft caps are come back to as long as there is something to gain.
+        double soft = soft_beyond_;
+        for (int i = 0, idle = 0; i < (far ? steps_inside : steps_inside_near) && (!feasible_ || (soft_beyond_ > 0 && idle < 6)); ++i) {
+            ++outcome.steps;
+            assemble(range, mu);
+            if (!factor_and_solve(range)) return false;
+            const double step = measure_step(range);
+            (void)take_step(range, mu, step);
+            relax(range, far ? Room::less : Room::half, room_beyond);
+            idle = soft_beyond_ < 0.999 * soft ? 0 : idle + 1;
+            soft = soft_beyond_;
+            if (step > 0.9 && !feasible_ && !far) mu *= 3;  // it is central, and still outside: further from all bounds
+        }
+        return feasible_;
+    };
+    if (range.first < range.last) {
+        if (!inside && (!feasible_ || soft_beyond_ > 0) && !come_in()) return outcome;
+        double mu = (guess == SpeedGuess::near ? 0.01 : 0.1) / sides;
+        center(range, mu);
+        for (const int most = outcome.steps + max_steps; outcome.steps < most && !outcome.settled;) {
+            ++outcome.steps;
+            if (!feasible_ || soft_beyond_ > 0) relax(range, Room::half, little_room);
+            assemble(range, mu);
+            if (!factor_and_solve(range)) break;
+            const double step = measure_step(range), gap = take_step(range, mu, step);
+            if (witness != nullptr && gap < near_gap && decrement_ < near_gap) {
+                finish();
+                witness->come_near(range, d);
+                witness = nullptr;
+                // What is beyond a lowered bound now is let come back to it; whether it did, who looks at the end sees.
+                relax(range, Room::first, little_room);
+                continue;
+            }
+            outcome.settled = gap + decrement_ < settled_gap;
+            // Far from the central path (a step promises much) mu waits for it.
+            const double wanted = gap * (step > 0.9 ? 0.1 : step > 0.5 ? 0.3 : step > 0.2 ? 0.6 : 1.0);
+            mu = std::max({wanted, std::min(0.3 * decrement_, mu * sides), 0.1 * settled_gap}) / sides;
+        }
     }
-    if (!feasible_) return outcome;
-    double mu = (guess == SpeedGuess::rough ? 0.1 : 0.01) / sides, previous = 1;
-    center(mu);
-    for (const int most = outcome.steps + max_steps; outcome.steps < most && !outcome.settled;) {
-        ++outcome.steps;
-        assemble(mu, goal);
-        if (!factor_and_solve()) break;
-        const Steps steps = measure_step(mu, d);
-        const double gap = take_step(steps, d);
-        const double least = std::min(steps.primal, steps.dual);
-        outcome.settled = gap < settled_gap && previous > 0.5 && least > 0.5;
-        previous = least;
-        mu = std::max(gap / sides * (least > 0.9 ? 0.1 : least > 0.5 ? 0.3 : least > 0.2 ? 0.6 : 1.0), 0.1 * settled_gap / sides);
-    }
+    finish();
+    outcome.soft_open = soft_beyond_ > 0;
     outcome.feasible = true;
     return outcome;
 }

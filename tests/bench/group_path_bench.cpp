@@ -63,6 +63,35 @@ void plan_thousand_segments(benchmark::State& state) {
 }
 BENCHMARK(plan_thousand_segments)->Unit(benchmark::kMillisecond);
 
+/// The same path as it is fed to a machine that runs: 200 segments ahead of where it is, 20 more at a time. The cycles are
+/// counted with it: some 2 us a segment.
+void feed_thousand_segments(benchmark::State& state) {
+    const Path path = contour(1000);
+    const PathCurve curve(path, 3);
+    constexpr std::size_t ahead = 200, batch = 20;
+    double duration = 0;
+    std::size_t stretches = 0;
+    for (auto _ : state) {
+        const auto exchange = std::make_unique<StretchExchange>();
+        PathPlayer player(*exchange);
+        PathService service(limits, *exchange, 0.02);
+        std::size_t known = std::min(ahead, path.sections().size());
+        double time = 0;
+        for (bool arrived = false; !arrived && time < 600; time += 0.01) {
+            if (path.index_at(player.now().s) + ahead >= known + batch) known = std::min(known + batch, path.sections().size());
+            stretches += service.step(curve, path.sections()[known - 1].end(), {}) == PathAnswer::offered ? 1 : 0;
+            for (int i = 0; i < 10; ++i) (void)player.step(1e-3);
+            arrived = player.standing() && player.now().s >= path.length() * (1 - 1e-9);
+        }
+        duration = time;
+    }
+    state.counters["us_per_segment"] =
+        benchmark::Counter(1e3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert, benchmark::Counter::kIs1000);
+    state.counters["stretches"] = static_cast<double>(stretches) / static_cast<double>(state.iterations());
+    state.counters["path_s"] = duration;
+}
+BENCHMARK(feed_thousand_segments)->Unit(benchmark::kMillisecond);
+
 void accept_a_move(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(contour(1000));
     state.counters["us_per_move"] = benchmark::Counter(1e3, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

@@ -34,6 +34,7 @@ public:
 
 struct Feeding {
     std::size_t programs = 0, cycles = 0, offered = 0, kept = 0, late = 0, halts = 0;
+    std::size_t stops = 0, slowed = 0;  // cycles: at rest where the path goes on, at a lowered velocity factor in use
     LimitUse worst;
     double worst_step = 0;  // differences of set-points between cycles, as parts of limits
 };
@@ -55,7 +56,10 @@ public:
         PathWish wish;
         std::size_t known = disturbed ? 1 : path_.sections().size();
         const int calm = 20'000;  // cycles after which nobody disturbs any more
-        const auto cycle = [&] { look(curve, player); };
+        const auto cycle = [&] {
+            look(curve, player);
+            obey(curve, player, wish, path_.sections()[known - 1].end());
+        };
         if (disturbed)
             curve.while_planning = [&] {
                 const int passed = random_.uniform(0, 1) < 0.1 ? random_.whole(20, 200) : random_.whole(0, 10);
@@ -87,9 +91,29 @@ private:
             return;
         }
         if (known < all && random_.uniform(0, 1) < 0.5) ++known;
-        if (random_.uniform(0, 1) < 0.1) wish.velocity_factor = random_.uniform(0, 1) < 0.2 ? 0 : random_.between_decades(0.03, 1);
-        if (random_.uniform(0, 1) < 0.1) wish.motion = wish.motion == PathWish::Motion::go ? PathWish::Motion::stand : PathWish::Motion::go;
+        if (random_.uniform(0, 1) < 0.02) wish.velocity_factor = random_.uniform(0, 1) < 0.2 ? 0 : random_.between_decades(0.03, 1);
+        if (random_.uniform(0, 1) < 0.02)
+            wish.motion = wish.motion == PathWish::Motion::go ? PathWish::Motion::stand : PathWish::Motion::go;
         totals_.halts += wish.motion == PathWish::Motion::stand ? 1 : 0;
+    }
+
+    /// Who is told to stand stands, and who is told to go slower does, once that has been wished for long enough: 0.6 s from full velocity to rest
+    /// and 0.2 s for its ramps are the most that random limits take, the rest is for planners that come late.
+    void obey(const PathCurve& curve, const PathPlayer& player, const PathWish& wish, double known_end) {
+        constexpr int long_enough = 3000;  // cycles
+        const bool stands = wish.motion == PathWish::Motion::stand || wish.velocity_factor <= 0;
+        const bool same = wish.motion == wished_.motion && wish.velocity_factor == wished_.velocity_factor;
+        wished_ = wish;
+        wished_for_ = same ? wished_for_ + 1 : 0;
+        if (wished_for_ < long_enough) return;
+        if (stands) {
+            ASSERT_EQ(last_.velocity, 0) << last_.s;
+            totals_.stops += last_.s < known_end * (1 - 1e-6) ? 1 : 0;
+        } else if (wish.velocity_factor < 1) {
+            const double use = last_.velocity / (wish.velocity_factor * curve.axes_in(player.part(), last_.s).point.path.velocity);
+            ASSERT_LE(use, 1 + 1e-6) << last_.s;
+            totals_.slowed += use > 0.99 ? 1 : 0;
+        }
     }
 
     /// One cycle: exact derivatives now, and what the drives see: differences between cycles.
@@ -139,14 +163,17 @@ private:
     PathMotion last_{};
     std::array<std::array<double, 3>, max_path_axes> axes_last_{};
     bool first_ = true;
+    PathWish wished_{};
+    int wished_for_ = 0;
 };
 
 void report(const char* what, const Feeding& f) {
     std::printf(
-        "%s: %zu programs, %zu cycles, %zu stretches, %zu kept, %zu late; worst use: velocity 1%+.1e, acceleration 1%+.1e, jerk 1%+.1e; "
+        "%s: %zu programs, %zu cycles, %zu stretches, %zu kept, %zu late, %zu cycles stopped, %zu slowed; worst use: velocity 1%+.1e, "
+        "acceleration 1%+.1e, jerk 1%+.1e; "
         "steps between cycles 1%+.1e\n",
-        what, f.programs, f.cycles, f.offered, f.kept, f.late, f.worst.velocity - 1, f.worst.acceleration - 1, f.worst.jerk - 1,
-        f.worst_step - 1);
+        what, f.programs, f.cycles, f.offered, f.kept, f.late, f.stops, f.slowed, f.worst.velocity - 1, f.worst.acceleration - 1,
+        f.worst.jerk - 1, f.worst_step - 1);
 }
 
 TEST(PathServiceProperty, UndisturbedProgramsArrive) {
@@ -169,6 +196,8 @@ TEST(PathServiceProperty, FeedingOverrideHaltsAndLatePlansKeepEveryLimit) {
     report("disturbed", totals);
     EXPECT_GT(totals.late, 0u);
     EXPECT_GT(totals.halts, 0u);
+    EXPECT_GT(totals.stops, 1000u);
+    EXPECT_GT(totals.slowed, 1000u);
 }
 
 }  // namespace

@@ -102,6 +102,23 @@ TEST(RunPlanProperty, CartesianProgramsKeepEveryLimit) {
     EXPECT_EQ(totals.lost, 0u);
 }
 
+// From one move to 200, every length as likely as its double: long runs are planned window by window, and more coarsely. With a factor of 5,000
+// this is 10^5 programs.
+TEST(RunPlanProperty, ProgramsOfEveryLengthKeepEveryLimit) {
+    Totals totals;
+    RandomProgram random(5);
+    const std::size_t cases = property_cases(20);
+    for (std::size_t i = 0; i < cases && !HasFailure(); ++i) {
+        SCOPED_TRACE(::testing::Message() << "program " << i);
+        const double size = random.between_decades(0.1, 1000), velocity = size * random.between_decades(0.3, 10);
+        const int axes = random.whole(1, 3), moves = static_cast<int>(random.between_decades(1, 201));
+        const Path path = random.path(moves, size, axes, velocity, random.uniform(0.8, 1));
+        plan_all(path, PathCurve(path, axes), random.limits(axes, velocity), totals);
+    }
+    report_plans("every length", totals);
+    EXPECT_EQ(totals.lost, 0u);
+}
+
 // Through the inverse of an arm of two links, which bends every line: joints' limits hold as well as axes' do.
 TEST(RunPlanProperty, ProgramsThroughAKinematicsKeepEveryLimit) {
     Totals totals;

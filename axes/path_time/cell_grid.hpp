@@ -1,0 +1,49 @@
+#pragma once
+// Where the cells of a run lie: they follow the curve, grow away from where they are small, and shrink towards rest.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "axes/path_time/curve.hpp"
+#include "axes/path_time/speed_problem.hpp"
+
+namespace taktwerk::axes {
+
+struct RunTask {
+    double from = 0;
+    double to = 0;
+    /// At `from`. Both 0: from rest.
+    double velocity = 0;
+    double acceleration = 0;
+    /// Override: scales the path's velocity limit. (0, 1].
+    double velocity_factor = 1;
+};
+
+class CellGrid {
+public:
+    /// Coarse: as for a run of many spans, whatever this one is.
+    enum class Grain : std::uint8_t { by_run, coarse };
+    void make(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, Grain grain);
+
+    /// Between the cells, ascending; pieces at rest lie outside.
+    std::vector<double> nodes;
+    std::vector<double> breaks;  ///< of the curve, with both ends of the run
+    SpeedEnd start, end;
+    bool coarse = false;  ///< as it was made
+
+private:
+    void add_breaks(const RunTask& task);
+    void add_stations(double largest);
+    [[nodiscard]] double size_at(double s, std::size_t& station) const;
+    void add_nodes();
+    void split_at_narrow_places();
+    [[nodiscard]] bool too_long(double a, double b) const;
+
+    const TimedCurve* curve_ = nullptr;
+    std::vector<double> stations_, sizes_;
+    enum class Bends : std::uint8_t { not_at_all, little, much };
+    std::vector<Bends> bends_;  // the curve behind the station
+};
+
+}  // namespace taktwerk::axes
