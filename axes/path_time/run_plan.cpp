@@ -15,7 +15,8 @@ constexpr int stations_between = 16;  // of a span that bends
 constexpr int most_of_run = 24;       // a cell is at most this part of a run
 constexpr double rest_share = 0.2;    // of the way with jerk that the piece at rest takes
 constexpr int rounds_at_most = 6;
-constexpr double slow_share = 0.02;  // of v2: what goes on where a former plan stopped
+constexpr double slow_share = 0.02;  // of v2: the least that is taken over of a former plan
+constexpr double on_share = 1.6;     // of the first guess, which is half of what has no jerk: what goes on where a former plan stopped
 constexpr int verified_points = 10;  // per cell
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -280,7 +281,7 @@ void RunPlanner::first_guess(const RunTask& task) {
         // at constant jerk from rest: v^3 = 4.5 j s^2
         if (start_.rest_length > 0) cap = std::min(cap, two_thirds(4.5 * l.jerk * (s - task.from) * (s - task.from)));
         cap = std::min(cap, two_thirds(4.5 * l.jerk * (task.to - s) * (task.to - s)));
-        const double before = i > 0 ? middles_[i - 1] : 0;
+        const double before = i > 0 ? middles_[i - 1] : task.velocity * task.velocity;
         const double way = i > 0 ? (nodes_[i + 1] - nodes_[i - 1]) / 2 : (nodes_[1] - nodes_[0]) / 2 + start_.rest_length;
         cap = std::min(cap, before + 1.6 * l.acceleration * way);
         middles_[i] = cap;
@@ -302,9 +303,11 @@ void RunPlanner::take_over(const RunTask& task, const RunShape& former) {
     const auto from = static_cast<std::size_t>(begin - former.nodes.begin());
     if (begin == former.nodes.end()) return;
     const bool same_end = std::fabs(task.to - former.end) < 1e-9 * (task.to - task.from);
+    // Who comes to rest before the former end brakes from here on; else it is the former motion as far as that gets faster.
+    const bool brakes = !same_end && task.to < former.end;
     std::size_t kept = former.nodes.size() - 1;
     if (!same_end) {
-        while (kept > from && (former.squares[kept] <= former.squares[kept - 1] || former.nodes[kept] > nodes_.back())) --kept;
+        while (kept > from && (brakes || former.squares[kept] <= former.squares[kept - 1] * (1 + 1e-9))) --kept;
     } else {
         end_.rest_length = task.to - former.nodes.back();
     }
@@ -319,6 +322,7 @@ void RunPlanner::take_over(const RunTask& task, const RunShape& former) {
 
     // Slow enough for everything, as from rest.
     first_guess(task);
+    const double goes_on = former.nodes[kept], peak = former.squares[kept];
     std::size_t cell = from;
     const auto former_square = [&](double s) {
         while (cell + 1 < former.middles.size() && former.nodes[cell + 1] < s) ++cell;
@@ -326,10 +330,25 @@ void RunPlanner::take_over(const RunTask& task, const RunShape& former) {
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
+    // Braking without a jump of the acceleration: it begins with what there is and ends as at constant jerk, and is never faster than the former motion.
+    const auto braked_square = [&](double s) {
+        const double way = task.to - task.from, x = std::clamp((s - task.from) / way, 0.0, 1.0), y = 1 - x;
+        const double begun = task.velocity * task.velocity + 2 * task.acceleration * way * x * y * y;
+        return std::min(former_square(s), begun * two_thirds(y * y * (1 + 2 * x)));
+    };
     for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
+        if (brakes) {
+            const double first = braked_square(nodes_[i]), middle = braked_square((nodes_[i] + nodes_[i + 1]) / 2),
+                         last = braked_square(nodes_[i + 1]);
+            middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+            continue;
+        }
         const double first = former_square(nodes_[i]), middle = former_square((nodes_[i] + nodes_[i + 1]) / 2),
                      last = former_square(nodes_[i + 1]);
-        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+        const double taken = 2 * middle - (first + last) / 2;
+        // Where the former plan brakes for its end, this one goes on.
+        middles_[i] =
+            same_end || nodes_[i + 1] <= goes_on ? std::max(taken, slow_share * middles_[i]) : std::min(peak, on_share * middles_[i]);
     }
 }
 
