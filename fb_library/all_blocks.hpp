@@ -93,7 +93,8 @@ using GroupBlocks =
               MC_GroupDisable, MC_GroupPower, MC_GroupReadPosition, MC_GroupReadActualPosition, MC_GroupReadVelocity,
               MC_GroupReadActualVelocity, MC_GroupReadAcceleration, MC_GroupReadMotionState, MC_GroupReadCommandInfo,
               MC_GroupWriteDefaultDynamics, MC_GroupReadDefaultDynamics, MC_GroupStop, MC_GroupHalt, MC_GroupInterrupt, MC_GroupContinue,
-              MC_GroupReadStatus, MC_GroupReadError, MC_GroupReset, MC_GroupReadSWLimits, MC_MoveLinearAbsolute, MC_MoveLinearRelative,
+              MC_GroupReadStatus, MC_GroupReadError, MC_GroupReset, MC_GroupReadSWLimits, MC_MoveLinearAbsolute, MC_MoveLinearRelative, MC_MoveCircularAbsolute,
+              MC_MoveCircularRelative,
               MC_MoveDirectAbsolute, MC_MoveDirectRelative, MC_GroupWaitTime, MC_GroupSetOverride>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;

@@ -2,6 +2,7 @@
 // One group as configured. Plain data, checked by check().
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,10 +12,12 @@
 
 namespace taktwerk::axes {
 
+class Kinematics;
+
 struct AxisGroupConfig {
     std::string name;
     std::vector<std::string> members{};  ///< in the order of their identifiers 1, 2, ...; a program may add others
-    GroupKinematics kinematics = GroupKinematics::none;
+    std::shared_ptr<const Kinematics> kinematics{};  ///< its joints are the members, in their order; nullptr: ACS only
     PathDynamics default_dynamics{};  ///< 0 = what the axes' limits leave on a path
 };
 
