@@ -14,8 +14,8 @@ namespace taktwerk::axes {
 enum class GroupCommandKind : std::uint8_t {
     none,
     // in the queue
-    linear_absolute,  ///< the tool's point on a straight line; in ACS: the axes
-    linear_relative,  ///< target = distance
+    linear_absolute,    ///< the tool's point on a straight line; in ACS: the axes
+    linear_relative,    ///< target = distance
     circular_absolute,  ///< the tool's point on an arc (circle)
     circular_relative,
     direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
@@ -32,7 +32,8 @@ enum class GroupCommandKind : std::uint8_t {
     return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::direct_relative;
 }
 [[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
-    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::circular_relative || kind == GroupCommandKind::direct_relative;
+    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::circular_relative ||
+           kind == GroupCommandKind::direct_relative;
 }
 [[nodiscard]] constexpr bool is_circular(GroupCommandKind kind) noexcept {
     return kind == GroupCommandKind::circular_absolute || kind == GroupCommandKind::circular_relative;

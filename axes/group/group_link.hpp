@@ -40,7 +40,7 @@ struct GroupOrder {
     CommandId id = 0;
     GroupCommand command{};  ///< target by rank; dynamics resolved
     MemberVector target{};
-    Pose frame{};         ///< of a Cartesian target, seen from the machine
+    Pose frame{};        ///< of a Cartesian target, seen from the machine
     bool joins = false;  ///< may be blended with the one before it
 
     bool stands = false;

@@ -29,8 +29,8 @@ private:
         PathService service;
         RunTrack& track;
         std::uint32_t first = 0;
-        bool open = true;           // a later move may join
-        bool offered = false;       // its first stretch
+        bool open = true;      // a later move may join
+        bool offered = false;  // its first stretch
         bool said_stuck = false;
         std::uint32_t published = 0;  // parts in front of it are the track's
         double final_end = 0;
@@ -54,7 +54,7 @@ private:
     std::uint32_t life_ = 0;
     std::uint32_t next_ = 0;  // number of the next run in this life
     std::array<std::unique_ptr<Run>, 2> runs_{};
-    std::deque<GroupOrder> moves_;  // not placed yet
+    std::deque<GroupOrder> moves_;    // not placed yet
     std::optional<MoveShape> first_;  // of the first of them
     MoveEnd end_;
     MoveSpace space_;

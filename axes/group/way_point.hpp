@@ -32,8 +32,8 @@ struct WayPoint {
 };
 
 /// `near`: the members close by, by which turns and free joints are chosen.
-[[nodiscard]] WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, const Pose& tool, std::size_t members,
-                                 const MemberVector& near) noexcept;
+[[nodiscard]] WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, const Pose& tool,
+                                 std::size_t members, const MemberVector& near) noexcept;
 
 [[nodiscard]] inline Joints joints_of(const MemberVector& members) noexcept {
     Joints joints{};

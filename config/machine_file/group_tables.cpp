@@ -44,11 +44,7 @@ Table<Shape> shape_table(std::string title, std::string doc, std::vector<Field<S
 template <class Shape>
 Field<ArmEntry> kind_of_arm(std::string key, Table<Shape> table, std::string doc) {
     return field_via<ArmEntry>(
-        std::move(key), section(std::move(table)),
-        [](ArmEntry& entry, const Shape& shape) {
-            entry.arm = axes::ArmDescription{shape};
-            ++entry.kinds;
-        },
+        std::move(key), section(std::move(table)), [](ArmEntry& entry, const Shape& shape) { entry.arm = axes::ArmDescription{shape}; },
         std::move(doc), "none");
 }
 
@@ -74,7 +70,6 @@ Field<ArmEntry> cartesian_field() {
             for (std::size_t i = 0; i < 3; ++i) arm.linear[i] = c.linear.find("XYZ"[i]) != std::string::npos;
             arm.turn_about = c.turn.empty() ? -1 : c.turn[0] - 'A';
             entry.arm = axes::ArmDescription{arm};
-            ++entry.kinds;
         },
         "X, Y, Z at right angles", "none");
 }
@@ -174,7 +169,6 @@ Table<ArmEntry> arm_table() {
             SixJoints six;
             six.geometry = lengths;
             entry.arm = ArmDescription{six};
-            ++entry.kinds;
         },
         "six joints with a spherical wrist", "none"));
     f.push_back(group<A>("base", "Where the arm is mounted, seen from the machine.",
@@ -194,12 +188,15 @@ Table<ArmEntry> arm_table() {
                          }));
     f.push_back(field("joints", &A::joints, by_name(section(joint_table()), [](JointEntry& j) -> std::string& { return j.axis; }),
                       "senses, zeros and limits of members, by axis"));
-    table.after = [](Reader& reader, const Node& node, A& entry) {
-        if (entry.kinds == 1) return;
-        reader.problem(node.at, "config.group_arm",
-                       entry.kinds == 0 ? fmt::format("`{}` names no arm", reader.path())
-                                        : fmt::format("`{}` names {} arms", reader.path(), entry.kinds),
-                       "write one of cartesian, core_xy, beam_gantry, scara, palletizer, rotary_delta, linear_delta, wrist");
+    table.after = [](Reader& reader, const Node& node, A&) {
+        int kinds = 0;  // also of one in which something is wrong
+        for (const char* kind : {"cartesian", "core_xy", "beam_gantry", "scara", "palletizer", "rotary_delta", "linear_delta", "wrist"})
+            kinds += node.find(kind) != nullptr ? 1 : 0;
+        if (kinds == 1) return;
+        reader.problem(
+            node.at, "config.group_arm",
+            kinds == 0 ? fmt::format("`{}` names no arm", reader.path()) : fmt::format("`{}` names {} arms", reader.path(), kinds),
+            "write one of cartesian, core_xy, beam_gantry, scara, palletizer, rotary_delta, linear_delta, wrist");
     };
     return table;
 }

@@ -22,10 +22,9 @@ struct JointEntry {
 /// Exactly one of them is written.
 struct ArmEntry {
     std::optional<axes::ArmDescription> arm;
-    std::array<double, 3> base{};   ///< in the group's unit
-    std::array<double, 3> tilt{};   ///< rad: turns about X, Y, Z of the machine's, as RX RY RZ
+    std::array<double, 3> base{};  ///< in the group's unit
+    std::array<double, 3> tilt{};  ///< rad: turns about X, Y, Z of the machine's, as RX RY RZ
     std::vector<JointEntry> joints;
-    int kinds = 0;
 };
 
 struct GroupEntry {

@@ -42,8 +42,7 @@ struct GroupRig {
     static constexpr GroupRef ref{0};
 
     /// One group "g" of all axes; it is not enabled yet.
-    explicit GroupRig(std::vector<AxisConfig> configs, Arm kinematics = {})
-        : GroupRig(configs, all_of(configs, kinematics)) {}
+    explicit GroupRig(std::vector<AxisConfig> configs, Arm kinematics = {}) : GroupRig(configs, all_of(configs, kinematics)) {}
     explicit GroupRig(std::size_t count, Arm kinematics = {}) : GroupRig(named(count), kinematics) {}
     GroupRig(const std::vector<AxisConfig>& configs, const std::vector<AxisGroupConfig>& grouped) {
         for (std::size_t i = 0; i < configs.size(); ++i) drives.push_back(std::make_unique<FakeDrive>(cycle));
@@ -128,7 +127,8 @@ struct GroupRig {
                 << view_of(i);
             // Told is shown: the group's view, the axis' view, and (by its oracle) the drive.
             // But for the last digit that the axis' own coordinates cost.
-            EXPECT_NEAR(groups[0].view().set_position[i], now_at.position, 1e-15 * std::max(100.0, std::abs(now_at.position))) << view_of(i);
+            EXPECT_NEAR(groups[0].view().set_position[i], now_at.position, 1e-15 * std::max(100.0, std::abs(now_at.position)))
+                << view_of(i);
             EXPECT_EQ(groups[0].view().set_velocity[i], now_at.velocity) << view_of(i);
         }
         last = {now_at, led};
