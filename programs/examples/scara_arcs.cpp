@@ -25,7 +25,7 @@ class ScaraArcs final : public Program {
     MC_MoveLinearAbsolute up_, down_;
     MC_MoveCircularAbsolute far_, near_;
 
-    bool draws_ = true, there_ = false;
+    bool draws_ = true, there_ = false, idle_ = false;
     std::int64_t laps_ = 0, failed_ = 0;
     double x_ = 0, y_ = 0, turn_ = 0;
 
@@ -100,7 +100,7 @@ private:
             ctx.get(corner_);
 
         const bool stands = status_.GroupStandby && power_.Status;
-        if (stands && draws_ && !to_start_.Execute && !up_.Execute) (there_ ? up_.Execute : to_start_.Execute) = true;
+        if (stands && draws_ && idle_) (there_ ? up_.Execute : to_start_.Execute) = true;
         to_start_(ctx);
         if (to_start_.Done) there_ = true;
         // Each follows as soon as the one before it is accepted: all four are one path.
@@ -111,6 +111,7 @@ private:
         down_(ctx);
         near_.Execute = down_.Execute && (down_.CommandAccepted || near_.Execute);
         near_(ctx);
+        idle_ = !to_start_.Execute && !up_.Execute;  // the blocks have seen it: the next TRUE is an edge
         const bool broken = up_.CommandAborted || far_.CommandAborted || down_.CommandAborted || near_.CommandAborted || up_.Error ||
                             far_.Error || down_.Error || near_.Error || to_start_.Error || to_start_.CommandAborted;
         if (near_.Done) ++laps_;
