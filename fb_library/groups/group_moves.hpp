@@ -120,12 +120,13 @@ struct MC_MoveCircularAbsolute : GroupCommandBlock<MC_MoveCircularAbsolute> {
 
     static constexpr std::string_view summary = "Moves the tool's point on an arc to a position.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), circle_pins<Self>(),
-                         grouped<&Self::Velocity, &Self::Acceleration, &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode,
-                                 &Self::TransitionVelocity, &Self::TransitionMode, &Self::TransitionParameter, &Self::OrientationMode>(),
-                         out<&Self::Done>("", "the set-point is at EndPoint"),
-                         grouped<&Self::Busy, &Self::Active, &Self::CommandAccepted, &Self::CommandAborted, &Self::Error, &Self::ErrorID,
-                                 &Self::CommandID>());
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Execute>(), circle_pins<Self>(),
+            grouped<&Self::Velocity, &Self::Acceleration, &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode,
+                    &Self::TransitionVelocity, &Self::TransitionMode, &Self::TransitionParameter, &Self::OrientationMode>(),
+            out<&Self::Done>("", "the set-point is at EndPoint"),
+            grouped<&Self::Busy, &Self::Active, &Self::CommandAccepted, &Self::CommandAborted, &Self::Error, &Self::ErrorID,
+                    &Self::CommandID>());
     }
     [[nodiscard]] axes::GroupCommand command() const noexcept { return circle_of(*this, axes::GroupCommandKind::circular_absolute); }
 };
@@ -151,12 +152,13 @@ struct MC_MoveCircularRelative : GroupCommandBlock<MC_MoveCircularRelative> {
 
     static constexpr std::string_view summary = "Moves the tool's point on an arc, whose points count from where the command begins.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), circle_pins<Self>(),
-                         grouped<&Self::Velocity, &Self::Acceleration, &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode,
-                                 &Self::TransitionVelocity, &Self::TransitionMode, &Self::TransitionParameter, &Self::OrientationMode>(),
-                         out<&Self::Done>("", "the set-point is at the end of the arc"),
-                         grouped<&Self::Busy, &Self::Active, &Self::CommandAccepted, &Self::CommandAborted, &Self::Error, &Self::ErrorID,
-                                 &Self::CommandID>());
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Execute>(), circle_pins<Self>(),
+            grouped<&Self::Velocity, &Self::Acceleration, &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode,
+                    &Self::TransitionVelocity, &Self::TransitionMode, &Self::TransitionParameter, &Self::OrientationMode>(),
+            out<&Self::Done>("", "the set-point is at the end of the arc"),
+            grouped<&Self::Busy, &Self::Active, &Self::CommandAccepted, &Self::CommandAborted, &Self::Error, &Self::ErrorID,
+                    &Self::CommandID>());
     }
     [[nodiscard]] axes::GroupCommand command() const noexcept { return circle_of(*this, axes::GroupCommandKind::circular_relative); }
 };

@@ -177,7 +177,8 @@ TEST(GroupBlocks, StatusIsExactlyOneOfSix) {
     stop.Execute = true;
     plc.scan();
     EXPECT_TRUE(status.GroupStopping);
-    ASSERT_TRUE(plc.until([&] { return motion.Decelerating; }, 90)) << "the planner's answer comes behind its lead of 8 ms and a piece of 40";
+    ASSERT_TRUE(plc.until([&] { return motion.Decelerating; }, 90))
+        << "the planner's answer comes behind its lead of 8 ms and a piece of 40";
     ASSERT_TRUE(plc.until([&] { return stop.Done; }, 300));
     EXPECT_TRUE(status.GroupStopping);
     stop.Execute = false;
