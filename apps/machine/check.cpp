@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/machine/axis_group_summary.hpp"
 #include "apps/machine/checked_machine.hpp"
 #include "apps/machine/group_summary.hpp"
 #include "apps/machine/master_gone.hpp"
@@ -416,6 +417,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}},
                             {"undescribed", undescribed_json(binding.profile.get())}});
     }
+    if (!config.axis_groups.empty()) out["axis_groups"] = axis_groups_json(config);
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
     out["hazards"] = hazards_json(config);
@@ -475,6 +477,7 @@ int check(const CheckOptions& options) {
     print_clocks(config);
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);
+    print_axis_groups(config);
     print_programs(config, layout);
     print_recording(config, checked.machine->signals());
     if (config.emergency_stop.input.empty())

@@ -78,7 +78,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const std::string& mac
 std::optional<MachineRecording::Memory> MachineRecording::memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch,
                                                                     runtime::RecordedThreads threads) {
     const auto& recording = config.recording;
-    const bool no_time = config.realtime.required || config.cycle < std::chrono::milliseconds{1};
+    const bool no_time = config.realtime.required || config.cycle < std::chrono::milliseconds{1} || !config.axis_groups.empty();
     if (threads == runtime::RecordedThreads::several && no_time) return std::nullopt;
     if (!recording.replay || recording.directory.empty() || recording.files == 0) return std::nullopt;
     constexpr std::uint64_t megabyte = 1'000'000;

@@ -39,7 +39,8 @@ public:
         std::optional<Memory> memory;
     };
     /// As the machine's `recording` says; `start`, `epoch`: as RunMemory::Place has them. None where the bus' scripts, which take memory from the heap,
-    /// would come onto the thread of a cycle that has no time for it: in real time below 1 ms, or where the machine requires real time.
+    /// would come onto the thread of a cycle that has no time for it: in real time below 1 ms, where the machine requires real time, or where
+    /// groups of axes have paths planned.
     [[nodiscard]] static std::optional<Memory> memory_of(const runtime::MachineConfig& config, Instant start, Duration epoch,
                                                          runtime::RecordedThreads threads);
 

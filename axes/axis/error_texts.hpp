@@ -318,6 +318,22 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"The axes are not where the path was interrupted", "A member was moved since: its set position is another than at the interruption",
       "Move the axes back to the place (MC_GroupReadPosition showed it at the end of the interruption), or give a new command"},
      {"各轴不在路径中断的位置", "中断后某个成员被移动：其设定位置与中断时不同", "将各轴移回中断位置（中断结束时 MC_GroupReadPosition 显示的位置），或发出新命令"}},
+    {ErrorId::out_of_reach, "out_of_reach",
+     {"The arm cannot go this path", "A place of the path is outside its reach, asks for an orientation that it cannot take, or is reached only with another elbow, shoulder or wrist than at the path's beginning",
+      "Give a target inside the reach; to change the way the arm stands, move with MC_MoveDirect..."},
+     {"机械臂无法走此路径", "路径上的某处超出工作范围，或要求其无法达到的姿态，或只能以与起点不同的肘、肩、腕形态到达", "给出工作范围内的目标；要改变形态，请使用 MC_MoveDirect..."}},
+    {ErrorId::singular_path, "singular_path",
+     {"The path leads too near to a singularity of the arm", "At a place of the path an axis would have to be more than a hundred times as fast as elsewhere", "Lead the path around it, or move there with MC_MoveDirect..."},
+     {"路径过于接近机械臂的奇异点", "在路径的某处，某个轴的速度须为别处的百倍以上", "使路径绕开该处，或用 MC_MoveDirect... 运动到那里"}},
+    {ErrorId::invalid_arc, "invalid_arc",
+     {"The points make no arc", "They coincide or lie on a line, begin and end are not equally far from the centre, or the radius is less than half the way between them", "Correct AuxPoint or EndPoint; for a half or full circle give the centre"},
+     {"给定的点不构成圆弧", "点重合或共线，起点和终点到圆心的距离不等，或半径小于两点距离的一半", "修正 AuxPoint 或 EndPoint；半圆或整圆请给出圆心"}},
+    {ErrorId::half_turn, "half_turn",
+     {"The tool shall turn by exactly half a turn", "Both ways round are equally long, and nothing says which one is meant", "Give a position between, or another orientation"},
+     {"工具须恰好旋转半圈", "两个方向同样长，无法判断要走哪一个", "给出中间位置，或换一个姿态"}},
+    {ErrorId::path_not_planned, "path_not_planned",
+     {"No motion along the path was found", "Within all limits of the axes and the command the planner found none from where the group stands", "Give the command again with lower dynamics or another path; report it with a recording of the run"},
+     {"未找到沿路径的运动", "在各轴和命令的所有限制之内，规划器从轴组所在位置未找到运动", "降低动态参数或更换路径后重新发出命令；请附上运行记录报告"}},
 }};
 // clang-format on
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "axes/group/motion_target.hpp"
+#include "axes/group/tool_view.hpp"
 
 namespace taktwerk::axes {
 
@@ -26,9 +27,8 @@ std::string_view name(GroupState state) noexcept {
 }
 
 AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle)
-    : config_(std::move(config)), members_(axes), cycle_(cycle) {
+    : config_(std::move(config)), members_(axes), run_(config_.kinematics, cycle) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
-    view_.kinematics = config_.kinematics;
     view_.default_dynamics = config_.default_dynamics;
     publish();
 }
@@ -63,7 +63,7 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
     if (interrupted_) run_.clear();
     interrupting_ = lock_ = 0;
     interrupted_ = begun_ = false;
-    run_.stop({}, Override{}, cycle_);
+    run_.stop({}, Override{});
 }
 
 // --- the cycle ------------------------------------------------------------------------------------------------------------------
@@ -103,9 +103,13 @@ void AxisGroup::watch_reset() noexcept {
 void AxisGroup::plan(Instant, Duration period) noexcept {
     if (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0) {
         if (run_.over() || !members_.led()) settle();
-        if (members_.led()) go_on(period);
+        if (members_.led()) {
+            send_waiting();
+            go_on(period);
+        }
     }
     publish();
+    see_tool(view_, config_.kinematics.get());
 }
 
 /// The group stands: what comes next.
@@ -145,45 +149,82 @@ void AxisGroup::settle() noexcept {
     }
 }
 
-bool AxisGroup::begin_active() noexcept {
-    const auto command = queue_.active().command;
-    begun_ = true;
-    elapsed_ = {};
-    if (command.kind == GroupCommandKind::wait) return true;
-    auto error = ErrorId::none;
-    if (goes_a_way(command.kind)) {
-        hold_ = here();
-        const auto target = target_of(command, hold_, members_);
-        const auto way = StraightWay::between(hold_, target);
-        error = refuse_target(command, target, members_);
-        if (error == ErrorId::none && way.length > 0) {
-            const auto wanted = resolved(command.dynamics, view_.default_dynamics);
-            if (run_.begin(way, members_.limits_along(way), wanted, view_.override_factors)) {
-                view_.commanded = target;
-                return true;
-            }
-            error = ErrorId::invalid_dynamics;
-        }
+std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) noexcept {
+    const auto& command = active.command;
+    if (!run_.exists()) {
+        hold_ = members_.set_positions();
+        if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none) return error;
+        if (goes_nowhere(command, hold_, members_)) return ErrorId::none;
+        if (!run_.restart(members_, view_.override_factors)) return std::nullopt;
+        sent_ = 0;
     }
-    queue_.finish_active(error == ErrorId::none ? Outcome::done : Outcome::error, error);
+    send_waiting();
+    if (const auto said = run_.verdict(active.id)) return said;
+    begun_ = run_.begin(active.id);
+    if (begun_) view_.commanded = run_.end();
+    return std::nullopt;
+}
+
+/// What is active or waits goes to the planner in its order. A wait, or an interruption, is no place to be passed.
+void AxisGroup::send_waiting() noexcept {
+    if (!run_.exists() || run_.stops()) return;
+    const auto send = [this](const AcceptedGroupCommand& accepted, const AcceptedGroupCommand* before) {
+        const auto& command = accepted.command;
+        if (accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
+        const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow;
+        if (!run_.send(accepted.id, command, resolved(command.dynamics, view_.default_dynamics), joins)) return false;
+        sent_ = accepted.id;
+        return true;
+    };
+    const auto* before = queue_.has_active() ? &queue_.active() : nullptr;
+    if (before != nullptr && !send(*before, nullptr)) return;
+    for (std::size_t i = 0; i < queue_.waiting(); ++i) {
+        const auto& next = queue_.waiting_at(i);
+        if (!send(next, before)) return;
+        before = &next;
+    }
+}
+
+bool AxisGroup::begin_active() noexcept {
+    const auto& active = queue_.active();
+    if (!goes_a_way(active.command.kind)) {
+        begun_ = true;
+        elapsed_ = {};
+        if (active.command.kind == GroupCommandKind::wait) return true;
+        queue_.finish_active(Outcome::done);
+        return false;
+    }
+    if (run_.stuck() != ErrorId::none || run_.stops()) run_.clear();
+    elapsed_ = {};
+    const auto over_with = begin_way(active);
+    if (!over_with) return true;
+    queue_.finish_active(*over_with == ErrorId::none ? Outcome::done : Outcome::error, *over_with);
     return false;
 }
 
 /// One period of the way, or of the wait.
 void AxisGroup::go_on(Duration period) noexcept {
-    const bool moves = run_.exists() && !run_.arrived();
-    if (moves) run_.advance(period);
+    run_.advance(period);
     const auto error = members_.lead([&](std::size_t place) { return run_.exists() ? run_.of(place) : MotionState{hold_[place], 0, 0}; });
-    if (error != ErrorId::none) {
-        fail(static_cast<std::uint16_t>(error));
+    if (error != ErrorId::none || run_.fault() != ErrorId::none) {
+        fail(static_cast<std::uint16_t>(error != ErrorId::none ? error : run_.fault()));
         return;
     }
     if (!begun_ || !queue_.has_active()) return;
-    const auto& command = queue_.active().command;
+    // The set-point has gone over to the way of a later command (G-061).
+    while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
+        queue_.finish_active(Outcome::done);
+        queue_.activate_next();
+        elapsed_ = {};
+    }
+    const auto& active = queue_.active();
+    const bool way = goes_a_way(active.command.kind);
+    if (way && run_.command() == active.id) view_.commanded = run_.end();
     const bool interrupts = interrupting_ != 0;
-    if (!(interrupts && command.kind == GroupCommandKind::wait)) elapsed_ += period;
-    const bool done =
-        command.kind == GroupCommandKind::wait ? !interrupts && elapsed_ >= command.duration : goes_a_way(command.kind) && run_.arrived();
+    if (!(interrupts && active.command.kind == GroupCommandKind::wait)) elapsed_ += period;
+    if (way && run_.stuck() != ErrorId::none && run_.over() && !run_.arrived()) queue_.finish_active(Outcome::error, run_.stuck());
+    const bool done = active.command.kind == GroupCommandKind::wait ? !interrupts && elapsed_ >= active.command.duration
+                                                                    : way && run_.arrived() && run_.command() == active.id;
     if (done) queue_.finish_active(Outcome::done);
 }
 
@@ -200,6 +241,7 @@ void AxisGroup::publish() noexcept {
     view_.state = state_;
     view_.interrupted = interrupted_;
     view_.member_count = static_cast<std::uint8_t>(members_.count());
+    view_.kinematics = has_all_joints(config_.kinematics.get(), members_);
     view_.members = members_.refs();
     view_.powered = view_.online = view_.in_position = view_.member_count > 0;
     const bool led = members_.led();
@@ -232,7 +274,7 @@ void AxisGroup::publish() noexcept {
     view_.elapsed = begun_ && queue_.has_active() ? elapsed_ : Duration{};
     view_.remaining_distance = on_way ? run_.remaining() : 0;
     view_.remaining = on_way ? from_seconds(run_.remaining_time()) : Duration{};
-    view_.progress = on_way ? 1 - run_.remaining() / run_.length() : 0;
+    view_.progress = on_way && run_.length() > 0 ? 1 - run_.remaining() / run_.length() : 0;
     if (begun_ && queue_.active().command.kind == GroupCommandKind::wait) {
         const auto duration = queue_.active().command.duration;
         view_.remaining = std::max(Duration{}, duration - elapsed_);

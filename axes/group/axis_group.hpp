@@ -12,6 +12,7 @@
 // the group is in GroupErrorStop then, and the others come to rest on the path.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "axes/group/group_config.hpp"
@@ -35,6 +36,8 @@ public:
 
     void update(Instant now) noexcept;
     void plan(Instant now, Duration period) noexcept;
+    /// The planner's step: service side, beside the cycle; not real-time.
+    void service() { run_.service(); }
 
     // --- the machine's hand ----------------------------------------------------------------------------------------------
     /// As MC_GroupHalt, whoever commands it.
@@ -71,6 +74,9 @@ private:
     void settle() noexcept;
     /// False: it is over already.
     [[nodiscard]] bool begin_active() noexcept;
+    /// None: it can be gone, or not yet. Something: what it is over with.
+    [[nodiscard]] std::optional<ErrorId> begin_way(const AcceptedGroupCommand& active) noexcept;
+    void send_waiting() noexcept;
     void go_on(Duration period) noexcept;
     void watch_reset() noexcept;
     void publish() noexcept;
@@ -81,12 +87,12 @@ private:
     PathRun run_;
     GroupView view_;      // and its settings: override, dynamics, error, reset
     JointVector hold_{};  // where the members stand without a run
-    Duration cycle_;
     GroupState state_ = GroupState::GroupDisabled;
     bool begun_ = false;           // the active command has begun
     bool interrupted_ = false;     // it stands, and what was under way may go on
     std::uint16_t going_off_ = 0;  // places that are shut down when it stands
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
+    CommandId sent_ = 0;  // the last one that the planner has
     Duration elapsed_{};  // of the active command
 };
 

@@ -23,6 +23,10 @@ public:
     void plan(Instant now, Duration period) noexcept {
         for (auto& group : groups_) group.plan(now, period);
     }
+    /// The planners' steps: service side, one thread beside the cycle; not real-time.
+    void service() {
+        for (auto& group : groups_) group.service();
+    }
     [[nodiscard]] std::size_t size() const noexcept { return groups_.size(); }
     [[nodiscard]] AxisGroup& operator[](std::size_t i) noexcept { return groups_[i]; }
     [[nodiscard]] const AxisGroup& operator[](std::size_t i) const noexcept { return groups_[i]; }

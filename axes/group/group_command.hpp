@@ -14,8 +14,10 @@ namespace taktwerk::axes {
 enum class GroupCommandKind : std::uint8_t {
     none,
     // in the queue
-    linear_absolute,  ///< the tool's point on a straight line; in ACS: the axes
-    linear_relative,  ///< target = distance
+    linear_absolute,    ///< the tool's point on a straight line; in ACS: the axes
+    linear_relative,    ///< target = distance
+    circular_absolute,  ///< the tool's point on an arc (circle)
+    circular_relative,
     direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
     direct_relative,
     wait,  ///< duration
@@ -30,7 +32,11 @@ enum class GroupCommandKind : std::uint8_t {
     return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::direct_relative;
 }
 [[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
-    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::direct_relative;
+    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::circular_relative ||
+           kind == GroupCommandKind::direct_relative;
+}
+[[nodiscard]] constexpr bool is_circular(GroupCommandKind kind) noexcept {
+    return kind == GroupCommandKind::circular_absolute || kind == GroupCommandKind::circular_relative;
 }
 [[nodiscard]] constexpr bool has_place_in_queue(GroupCommandKind kind) noexcept {
     return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::halt;
@@ -42,12 +48,24 @@ struct PathDynamics {
     friend bool operator==(const PathDynamics&, const PathDynamics&) = default;
 };
 
+/// What an arc goes by, beside its end: a point of its border, its centre (its plane is XY of the frame), or the normal of its plane with the radius
+/// as its length; in the command's frame, relative as its target is. u
+struct CirclePins {
+    MC_CIRC_MODE mode = mcBORDER;
+    bool clockwise = false;  ///< PathChoice, seen against the normal (G-039)
+    double tolerance = 0;    ///< u, of centres: by how much the radii of begin and end may differ; 0 = a millionth of a unit
+    std::array<double, 3> aux{};
+    friend bool operator==(const CirclePins&, const CirclePins&) = default;
+};
+
 struct GroupCommand {
     GroupCommandKind kind = GroupCommandKind::none;
     MC_CoordSystem frame = mcACS;
     MC_BufferMode buffer_mode = mcAborting;
     MC_TransitionMode transition = mcTMNone;
+    double transition_parameter = 0;  ///< >= 0: u for a distance or deviation, a factor of a velocity
     MC_OrientationMode orientation = mcLinear;
+    CirclePins circle{};
     JointVector target{};  ///< ACS: by place. Other frames: X Y Z [u], RX RY RZ [rad]
     PathDynamics dynamics{};
     Duration duration{};

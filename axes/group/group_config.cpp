@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "axes/kinematics/kinematics.hpp"
 #include "core/nearest_name.hpp"
 
 namespace taktwerk::axes {
@@ -21,14 +22,16 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
         if (group.name.empty()) problem("no_name", "the group has no name", "give it one: programs find it by that");
         else if (!names.insert(group.name).second)
             problem("name_twice", "another group is called '" + group.name + "'", "give each group a name of its own");
-        if (group.members.size() > most_members)
-            problem(
-                "too_many_members",
-                "it has " + std::to_string(group.members.size()) + " members, and a group has " + std::to_string(most_members) + " at most",
-                "divide it");
-        if (group.kinematics == GroupKinematics::identity && group.members.size() > 3)
-            problem("kinematics", "its kinematics is the identity, and it has more than the three axes X, Y, Z",
-                    "take the other axes out, or the kinematics");
+        if (group.members.size() > most_moved_members)
+            problem("too_many_members",
+                    "it has " + std::to_string(group.members.size()) + " members, and a path moves " + std::to_string(most_moved_members) +
+                        " at most",
+                    "divide it");
+        if (group.kinematics && group.members.size() != group.kinematics->joint_count())
+            problem("kinematics",
+                    "its arm has " + std::to_string(group.kinematics->joint_count()) + " joints, and it has " +
+                        std::to_string(group.members.size()) + " members",
+                    "name one axis for each joint, from the base on");
         for (const auto& member : group.members) {
             if (std::find(known.begin(), known.end(), member) == known.end()) {
                 const auto near = nearest_name(member, known);

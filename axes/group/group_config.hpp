@@ -2,6 +2,7 @@
 // One group as configured. Plain data, checked by check().
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,11 +12,13 @@
 
 namespace taktwerk::axes {
 
+class Kinematics;
+
 struct AxisGroupConfig {
     std::string name;
-    std::vector<std::string> members{};  ///< in the order of their identifiers 1, 2, ...; a program may add others
-    GroupKinematics kinematics = GroupKinematics::none;
-    PathDynamics default_dynamics{};  ///< 0 = what the axes' limits leave on a path
+    std::vector<std::string> members{};              ///< in the order of their identifiers 1, 2, ...; a program may add others
+    std::shared_ptr<const Kinematics> kinematics{};  ///< its joints are the members, in their order; nullptr: ACS only
+    PathDynamics default_dynamics{};                 ///< 0 = what the axes' limits leave on a path
 };
 
 /// Every problem; `axes`: the names of the machine's axes. Codes: group.no_name, group.name_twice, group.too_many_members, group.unknown_axis,

@@ -8,7 +8,7 @@ ErrorId GroupMembers::add(AxisRef axis, std::uint8_t ident) noexcept {
     if (axis.index >= axes_.size()) return ErrorId::invalid_axis;
     if (ident < 1 || ident > most_members || has(ident - 1u) || contains(axis)) return ErrorId::invalid_member;
     const auto& config = axes_[axis.index].config();
-    if (config.encoder || config.modulo > 0) return ErrorId::not_supported;
+    if (config.encoder || config.modulo > 0 || count() == most_moved_members) return ErrorId::not_supported;
     members_[ident - 1u] = axis;
     return ErrorId::none;
 }
@@ -87,13 +87,6 @@ JointVector GroupMembers::set_positions() const noexcept {
     for (std::size_t i = 0; i < most_members; ++i)
         if (has(i)) positions[i] = axis(i).view().set_position;
     return positions;
-}
-
-WayLimits GroupMembers::limits_along(const StraightWay& way) const noexcept {
-    WayLimits limits;
-    for (std::size_t i = 0; i < most_members; ++i)
-        if (has(i)) limits.take(i, way.direction[i], axis(i).config().limits);
-    return limits;
 }
 
 }  // namespace taktwerk::axes

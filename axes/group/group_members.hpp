@@ -7,7 +7,7 @@
 
 #include "axes/axis/axis.hpp"
 #include "axes/group/group_types.hpp"
-#include "axes/group/straight_way.hpp"
+#include "axes/planner/motion.hpp"
 
 namespace taktwerk::axes {
 
@@ -15,7 +15,7 @@ class GroupMembers {
 public:
     explicit GroupMembers(std::span<Axis> axes) noexcept : axes_(axes) {}
 
-    /// `ident` from 1 to most_members. Errors: invalid_axis, invalid_member, not_supported (a modulo axis, one without set-points).
+    /// `ident` from 1 to most_members. Errors: invalid_axis, invalid_member, not_supported (a modulo axis, one without set-points, a ninth).
     ErrorId add(AxisRef axis, std::uint8_t ident) noexcept;
     ErrorId remove(std::uint8_t ident) noexcept;
     void remove_all() noexcept { members_ = {}; }
@@ -61,8 +61,6 @@ public:
     [[nodiscard]] std::uint16_t error_of_any() const noexcept;
 
     [[nodiscard]] JointVector set_positions() const noexcept;
-    /// The members' limits along a way.
-    [[nodiscard]] WayLimits limits_along(const StraightWay& way) const noexcept;
 
 private:
     std::span<Axis> axes_;

@@ -26,6 +26,8 @@ public:
     [[nodiscard]] bool has_active() const noexcept { return active_.id != 0; }
     [[nodiscard]] const AcceptedGroupCommand& active() const noexcept { return active_; }
     [[nodiscard]] std::size_t waiting() const noexcept { return waiting_; }
+    /// In their turn; i < waiting().
+    [[nodiscard]] const AcceptedGroupCommand& waiting_at(std::size_t i) const noexcept { return ring_[(first_ + i) % capacity]; }
     [[nodiscard]] bool full() const noexcept { return waiting_ == capacity; }
 
     void activate(const AcceptedGroupCommand& command) noexcept { active_ = command; }

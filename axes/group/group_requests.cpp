@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "axes/group/axis_group.hpp"
 #include "axes/group/motion_target.hpp"
@@ -19,6 +20,14 @@ ErrorId check_dynamics(const PathDynamics& dynamics) noexcept {
     if (!std::isfinite(dynamics.velocity)) return ErrorId::invalid_velocity;
     const bool finite = std::isfinite(dynamics.acceleration) && std::isfinite(dynamics.deceleration) && std::isfinite(dynamics.jerk);
     return finite ? ErrorId::none : ErrorId::invalid_dynamics;
+}
+
+ErrorId refuse_transition(const GroupCommand& command) noexcept {
+    if (command.transition > mcTMMaxCornerDeviation) return ErrorId::invalid_parameter;
+    const bool by_velocity = command.transition == mcTMStartVelocity || command.transition == mcTMConstantVelocity;
+    const double most = by_velocity ? 1 : std::numeric_limits<double>::max();
+    const bool usable = command.transition_parameter >= 0 && command.transition_parameter <= most;
+    return command.transition == mcTMNone || usable ? ErrorId::none : ErrorId::invalid_parameter;
 }
 
 }  // namespace
@@ -43,11 +52,18 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
 }
 
 ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
-    if (command.transition != mcTMNone || command.orientation != mcLinear) return ErrorId::not_supported;
-    if (const auto error = refuse_frame(command.frame, config_.kinematics, members_); error != ErrorId::none) return error;
-    // Relative to what: a command that waits, or brakes another one first, is checked where it begins.
+    if (command.orientation != mcLinear) return ErrorId::not_supported;
+    if (is_circular(command.kind) && (command.circle.mode > mcRADIUS || !(command.circle.tolerance >= 0)))
+        return ErrorId::invalid_parameter;
+    if (const auto error = refuse_transition(command); error != ErrorId::none) return error;
+    if (const auto error = refuse_frame(command, config_.kinematics.get(), members_); error != ErrorId::none) return error;
+    // Relative to what: a command that waits, or brakes another one first, is checked where it begins. What only the whole way shows the planner
+    // says before it starts.
     const bool known = !is_relative(command.kind) || (!waits(command) && run_.over());
-    return known ? refuse_target(command, target_of(command, here(), members_), members_) : ErrorId::none;
+    if (!known) return ErrorId::none;
+    const auto at = here();
+    if (const auto error = refuse_target(command, target_of(command, at, members_), members_); error != ErrorId::none) return error;
+    return refuse_reach(command, at, config_.kinematics.get());
 }
 
 ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexcept {
@@ -96,7 +112,7 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
         run_.clear();
         hold_ = members_.set_positions();
     } else {
-        run_.stop(command.dynamics, view_.override_factors, cycle_);
+        run_.stop(command.dynamics, view_.override_factors);
     }
     const auto id = queue_.next_id();
     queue_.activate({id, owner, command});
@@ -110,7 +126,7 @@ CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcep
     queue_.activate({lock_, owner, command});
     begun_ = true;
     fire(GroupEvent::stop);
-    if (members_.led()) run_.stop(command.dynamics, Override{}, cycle_);
+    if (members_.led()) run_.stop(command.dynamics, Override{});
     return lock_;
 }
 
@@ -118,7 +134,7 @@ CommandId AxisGroup::take_interrupt(const GroupCommand& command) noexcept {
     const auto id = queue_.next_id();
     if (members_.led()) {
         interrupting_ = id;
-        run_.stop(command.dynamics, Override{}, cycle_);
+        run_.stop(command.dynamics, Override{});
     } else {
         interrupted_ = true;
         queue_.record(id, Outcome::done);
@@ -157,7 +173,7 @@ CommandId AxisGroup::take_disable() noexcept {
     const auto id = queue_.next_id();
     if (members_.led()) {
         disabling_ = id;
-        run_.stop({}, Override{}, cycle_);
+        run_.stop({}, Override{});
     } else {
         fire(GroupEvent::disable);
         queue_.record(id, Outcome::done);
@@ -192,7 +208,7 @@ void AxisGroup::shut_down(AxisRef axis) noexcept {
     if (state_ != GroupState::GroupErrorStop) {
         abort_all();
         lock_ = 0;
-        run_.stop({}, Override{}, cycle_);
+        run_.stop({}, Override{});
     }
     publish();
 }

@@ -12,6 +12,8 @@ namespace taktwerk::axes {
 
 /// A member's place is its IdentInGroup - 1, from 0 on.
 inline constexpr std::size_t most_members = 16;
+/// Members that one path can move.
+inline constexpr std::size_t most_moved_members = 8;
 /// One number a place; those of places without a member mean nothing. u, u/s, ... of each axis.
 using JointVector = std::array<double, most_members>;
 
@@ -28,7 +30,9 @@ enum MC_TransitionVelocity : std::uint8_t { mcTVZero, mcTVLow, mcTVPrevious, mcT
 /// How the tool turns on the way.
 enum MC_OrientationMode : std::uint8_t { mcLinear, mcJointInterpolated, mcFixed, mcPathBased };
 
-/// How a group gets from axes to poses. `identity`: members 1 to 3 are X, Y, Z.
-enum class GroupKinematics : std::uint8_t { none, identity };
+/// What AuxPoint of an arc is.
+enum MC_CIRC_MODE : std::uint8_t { mcBORDER, mcCENTER, mcRADIUS };
+/// Which way round, seen against the normal of the arc's plane.
+enum MC_CIRC_PATHCHOICE : std::uint8_t { mcClockwise, mcCounterClockwise };
 
 }  // namespace taktwerk::axes

@@ -20,7 +20,7 @@ struct GroupView {
     bool resetting = false;
     ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
     bool interrupted = false;             ///< stands, and MC_GroupContinue goes on
-    GroupKinematics kinematics = GroupKinematics::none;
+    bool kinematics = false;              ///< it has an arm, and all of its joints are members: frames other than ACS can be read
 
     std::uint8_t member_count = 0;
     std::array<AxisRef, most_members> members{};  ///< by place; invalid: none
@@ -33,6 +33,10 @@ struct GroupView {
     JointVector actual_position{}, actual_velocity{};
     bool online = false;  ///< the actual values of all members are fresh enough
 
+    // The tool's point, where kinematics and the numbers are there: X Y Z [u], RX RY RZ [rad]; velocities of it, u/s and rad/s about the axes.
+    bool tool_known = false;
+    std::array<double, 6> tool_set{}, tool_actual{}, tool_commanded{}, tool_velocity{}, tool_actual_velocity{};
+
     // along the path
     double path_velocity = 0, path_acceleration = 0;
     PathLimiter limiter = PathLimiter::none;
@@ -40,7 +44,6 @@ struct GroupView {
 
     // of the active command
     GroupCommandKind active_kind = GroupCommandKind::none;
-    bool active_in_target = false;  ///< never: no group command goes on at its target
     CommandId active = 0;
     Duration elapsed{};    ///< since it became active
     Duration remaining{};  ///< as planned now; 0 where nobody can say

@@ -2,40 +2,61 @@
 
 #include <cmath>
 
+#include "axes/group/move_shape.hpp"
+#include "axes/kinematics/kinematics.hpp"
+
 namespace taktwerk::axes {
 
-namespace {
+bool has_all_joints(const Kinematics* arm, const GroupMembers& members) noexcept {
+    if (arm == nullptr) return false;
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (members.has(i) != (i < arm->joint_count())) return false;
+    return true;
+}
 
-constexpr std::size_t cartesian_axes = 3;  // of the identity
-
-}  // namespace
-
-ErrorId refuse_frame(MC_CoordSystem frame, GroupKinematics kinematics, const GroupMembers& members) noexcept {
-    if (frame == mcACS) return ErrorId::none;
-    if (frame > mcTCS) return ErrorId::invalid_parameter;
-    if (kinematics == GroupKinematics::none) return ErrorId::no_kinematics;
-    for (std::size_t i = cartesian_axes; i < most_members; ++i)
-        if (members.has(i)) return ErrorId::no_kinematics;
-    return frame == mcMCS ? ErrorId::none : ErrorId::not_supported;
+ErrorId refuse_frame(const GroupCommand& command, const Kinematics* arm, const GroupMembers& members) noexcept {
+    if (command.frame == mcACS) return is_circular(command.kind) ? ErrorId::no_kinematics : ErrorId::none;
+    if (command.frame > mcTCS) return ErrorId::invalid_parameter;
+    if (!has_all_joints(arm, members)) return ErrorId::no_kinematics;
+    return command.frame == mcMCS ? ErrorId::none : ErrorId::not_supported;
 }
 
 JointVector target_of(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept {
     JointVector target = here;
+    if (command.frame != mcACS) return target;
     for (std::size_t i = 0; i < most_members; ++i)
         if (members.has(i)) target[i] = is_relative(command.kind) ? here[i] + command.target[i] : command.target[i];
     return target;
 }
 
+ErrorId refuse_reach(const GroupCommand& command, const JointVector& here, const Kinematics* arm) noexcept {
+    if (command.frame == mcACS || is_relative(command.kind)) return ErrorId::none;
+    Joints near{};
+    for (std::size_t i = 0; i < max_joints; ++i) near[i] = here[i];
+    const auto stand = arm->inverse(pose_of_six(command.target), {}, {}, near);
+    if (stand.ok()) return ErrorId::none;
+    return stand.miss.fault == KinematicFault::joint_limit ? ErrorId::beyond_software_limit : ErrorId::out_of_reach;
+}
+
+bool goes_nowhere(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept {
+    return command.frame == mcACS && target_of(command, here, members) == here;
+}
+
 ErrorId refuse_target(const GroupCommand& command, const JointVector& target, const GroupMembers& members) noexcept {
+    constexpr std::size_t pose_numbers = 6;
     if (command.frame != mcACS)
-        for (std::size_t i = cartesian_axes; i < 2 * cartesian_axes; ++i)  // the identity turns nothing
-            if (command.target[i] != 0) return ErrorId::invalid_position;
+        for (std::size_t i = 0; i < pose_numbers; ++i)
+            if (!std::isfinite(command.target[i])) return ErrorId::invalid_position;
+    if (is_circular(command.kind))
+        for (const double value : command.circle.aux)
+            if (!std::isfinite(value)) return ErrorId::invalid_position;
     for (std::size_t i = 0; i < most_members; ++i) {
         if (!members.has(i)) continue;
-        if (!std::isfinite(command.target[i]) || !std::isfinite(target[i])) return ErrorId::invalid_position;
         const auto& config = members.axis(i).config();
         const bool homed = members.axis(i).view().homed;
         if (!is_relative(command.kind) && config.require_homed && !homed) return ErrorId::not_homed;
+        if (command.frame != mcACS) continue;
+        if (!std::isfinite(command.target[i]) || !std::isfinite(target[i])) return ErrorId::invalid_position;
         if (homed && (target[i] > config.limits.position_max || target[i] < config.limits.position_min))
             return ErrorId::beyond_software_limit;
     }

@@ -1,108 +1,281 @@
 #include "axes/group/path_run.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
-#include "axes/axis/stop_ramp.hpp"
-#include "axes/planner/plan.hpp"
+#include "axes/group/group_planner.hpp"
+#include "axes/path_time/path_player.hpp"
 
 namespace taktwerk::axes {
-
 namespace {
 
-double resolved(double wanted, double limit) noexcept { return wanted > 0 ? std::min(wanted, limit) : limit; }
+/// How soon a plan can be in the cycle, s, and in cycles at least. Plans that take longer make it grow.
+constexpr double least_lead = 0.008;
+constexpr double least_lead_cycles = 4;
+/// A part of a limit that counts as using it.
+constexpr double in_use = 0.98;
 
-/// Whether it ends before the end, by more than the last digits of a sum. A stop that reaches the end is none: what runs ends there anyway, and exactly.
-bool within(double end, double length) noexcept { return end < length * (1 - 1e-12); }
+MemberLimits limits_of(const Axis& axis) noexcept {
+    const auto& limits = axis.config().limits;
+    MemberLimits m;
+    // A path turns: what holds in one direction only is kept in both.
+    m.velocity = std::min(limits.velocity_towards(1), limits.velocity_towards(-1));
+    m.acceleration = std::min(
+        {limits.acceleration_towards(1), limits.acceleration_towards(-1), limits.deceleration_towards(1), limits.deceleration_towards(-1)});
+    // Without a limit: an acceleration builds up within a few milliseconds.
+    constexpr double shortest_ramp = 0.002;
+    m.jerk = std::isfinite(limits.jerk) ? limits.jerk : m.acceleration / shortest_ramp;
+    const bool hold = axis.view().homed;
+    m.low = hold ? limits.position_min : -std::numeric_limits<double>::infinity();
+    m.high = hold ? limits.position_max : std::numeric_limits<double>::infinity();
+    return m;
+}
 
 }  // namespace
 
-bool PathRun::begin(const StraightWay& way, const WayLimits& limits, const PathDynamics& wanted, const Override& factors) noexcept {
-    *this = {};
-    way_ = way;
-    limits_ = limits;
-    const auto& most = limits.along;
-    wanted_ = {resolved(wanted.velocity, most.velocity), resolved(wanted.acceleration, most.acceleration),
-               resolved(wanted.deceleration, most.deceleration), resolved(wanted.jerk, most.jerk)};
-    factors_ = factors;
-    exists_ = true;
-    profile_ = Profile{MotionState{}};
-    if (factors.velocity == 0) return true;  // it waits where it begins
-    if (plan()) return true;
-    exists_ = false;
-    return false;
+struct PathRun::Inside {
+    Inside(std::shared_ptr<const Kinematics> its_arm, Duration its_cycle)
+        : arm(std::move(its_arm)), planner(link, arm.get(), std::max(least_lead, least_lead_cycles * to_seconds(its_cycle))) {}
+
+    GroupLink link;
+    std::shared_ptr<const Kinematics> arm;
+    GroupPlanner planner;
+
+    // The cycle's own.
+    GroupOrder wish;
+    bool told = true;  // the wish
+    std::uint32_t life = 0;
+    std::uint32_t begun = 0;  // runs, in this life
+    RunTrack* track = nullptr;
+    std::optional<PathPlayer> player;
+    std::array<std::uint8_t, max_path_axes> places{};
+    std::array<MemberLimits, max_path_axes> limits{};
+    std::size_t members = 0;
+    Pose tool{};
+    MemberVector q{}, velocity{}, acceleration{};
+    WayPoint at;
+    std::array<GroupVerdict, 32> verdicts{};
+    std::size_t next_verdict = 0;
+    std::uint32_t late = 0;
+};
+
+PathRun::PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle) : inside_(std::make_unique<Inside>(std::move(arm), cycle)) {}
+PathRun::PathRun(PathRun&&) noexcept = default;
+PathRun::~PathRun() = default;
+
+void PathRun::service() { inside_->planner.step(); }
+
+// --- orders ---------------------------------------------------------------------------------------------------------------------
+
+void PathRun::tell() noexcept {
+    auto& in = *inside_;
+    if (in.told) return;
+    in.wish.kind = GroupOrder::Kind::wish;
+    in.told = in.link.orders.try_push(in.wish);
 }
 
-void PathRun::take(const Profile& profile) noexcept {
-    profile_ = profile;
-    elapsed_ = {};
-    piece_ = 0;
-    plan_pending_ = false;
-}
-
-/// To the end, or to rest where the override is 0. False: with these factors it would pass the end, or turn round.
-bool PathRun::plan() noexcept {
-    const MotionLimits limits{std::min(wanted_.velocity * factors_.velocity, limits_.along.velocity),
-                              wanted_.acceleration * factors_.acceleration, wanted_.deceleration * factors_.acceleration,
-                              wanted_.jerk * factors_.jerk};
-    if (factors_.velocity == 0) {
-        if (over()) return true;
-        const auto rest = plan_stop(s_, MotionLimits{wanted_.velocity, limits.acceleration, limits.deceleration, limits.jerk});
-        if (rest.error != PlanError::none || !within(rest.profile.end().position, way_.length) || rest.profile.top_velocity(-1) > 0)
-            return false;
-        take(rest.profile);
-        return true;
+bool PathRun::restart(const GroupMembers& members, const Override& factors) noexcept {
+    auto& in = *inside_;
+    GroupOrder order;
+    order.kind = GroupOrder::Kind::restart;
+    order.life = in.life + 1;
+    order.factors = factors;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < most_members; ++i) {
+        states_[i] = {};
+        if (!members.has(i) || count == max_path_axes) continue;
+        order.from[count] = members.axis(i).view().set_position;
+        order.limits[count] = limits_of(members.axis(i));
+        states_[i] = {order.from[count], 0, 0};
+        end_[i] = order.from[count];
+        in.places[count++] = static_cast<std::uint8_t>(i);
     }
-    const auto way = plan_to_position(s_, way_.length, limits);
-    if (way.error != PlanError::none || way.profile.top_velocity(-1) > 0) return false;
-    take(way.profile);
+    order.members = static_cast<std::uint8_t>(count);
+    if (!in.link.orders.try_push(order)) return false;
+    clear();
+    ++in.life;
+    in.begun = 0;
+    in.link.at_run.store(GroupLink::both(in.life, 0), std::memory_order_release);
+    in.members = count;
+    in.limits = order.limits;
+    in.tool = order.tool;
+    in.q = order.from;
+    in.wish = order;
+    in.told = true;
+    exists_ = true;
     return true;
 }
 
-void PathRun::advance(Duration period) noexcept {
-    if (!exists_) return;
-    if (plan_pending_ && !stops_) plan_pending_ = !plan();
-    elapsed_ += period;
-    const auto sample = profile_.sample(std::min(to_seconds(elapsed_), profile_.duration()), piece_);
-    s_ = sample.state;
-    piece_ = sample.piece;
+bool PathRun::send(CommandId id, const GroupCommand& command, const PathDynamics& dynamics, bool joins) noexcept {
+    auto& in = *inside_;
+    GroupOrder order;
+    order.kind = GroupOrder::Kind::move;
+    order.life = in.life;
+    order.id = id;
+    order.command = command;
+    order.command.dynamics = dynamics;
+    for (std::size_t k = 0; k < in.members; ++k) order.target[k] = command.target[in.places[k]];
+    order.joins = joins;
+    return in.link.orders.try_push(order);
+}
+
+std::optional<ErrorId> PathRun::verdict(CommandId id) noexcept {
+    for (const auto& v : inside_->verdicts)
+        if (v.id == id && v.life == inside_->life && !v.standing) return v.error;
+    return std::nullopt;
 }
 
 void PathRun::override_with(const Override& factors) noexcept {
-    if (factors == factors_) return;
-    factors_ = factors;
-    if (exists_ && !stops_ && !arrived()) plan_pending_ = !plan();
+    auto& in = *inside_;
+    if (stops_ || factors == in.wish.factors) return;
+    in.wish.factors = factors;
+    in.told = false;
+    tell();
 }
 
-void PathRun::stop(const PathDynamics& ramp, const Override& factors, Duration period) noexcept {
+void PathRun::stop(const PathDynamics& ramp, const Override& factors) noexcept {
+    auto& in = *inside_;
     if (!exists_) return;
     stops_ = true;
-    plan_pending_ = false;
-    if (over()) return;
-    const auto& most = limits_.along;
-    const MotionLimits limits{most.velocity, most.acceleration, resolved(ramp.deceleration, most.deceleration) * factors.acceleration,
-                              resolved(ramp.jerk, most.jerk) * factors.jerk};
-    const auto rest = plan_stop(s_, never_reversing(s_, limits, to_seconds(period)));
-    if (rest.error != PlanError::none) return;
-    // Too soft to end on the way: what runs ends there, at rest, and goes on.
-    if (!within(rest.profile.end().position, way_.length)) return;
-    take(rest.profile);
+    in.wish.stands = true;
+    in.wish.factors = factors;
+    in.wish.ramp = ramp;
+    in.told = false;
+    tell();
 }
 
 void PathRun::resume(const Override& factors) noexcept {
-    factors_ = factors;
+    auto& in = *inside_;
     stops_ = false;
-    if (exists_ && !arrived()) plan_pending_ = !plan();
+    in.wish.stands = false;
+    in.wish.factors = factors;
+    in.wish.ramp = {};
+    in.told = false;
+    tell();
+}
+
+// --- the way --------------------------------------------------------------------------------------------------------------------
+
+bool PathRun::begin(CommandId id) noexcept {
+    auto& in = *inside_;
+    if (!exists_) return false;
+    if (in.player && in.track->last.load(std::memory_order_acquire) >= id) {
+        arrived_ = false;
+        return true;
+    }
+    RunTrack& next = in.link.tracks[in.begun % 2];
+    if (next.ready.load(std::memory_order_acquire) != GroupLink::both(in.life, id)) return false;
+    if (in.player) in.late += in.player->late();
+    in.track = &next;
+    in.player.emplace(next.exchange, 0.0);
+    ++in.begun;
+    in.link.at_run.store(GroupLink::both(in.life, in.begun), std::memory_order_release);
+    arrived_ = false;
+    return true;
+}
+
+void PathRun::clear() noexcept {
+    auto& in = *inside_;
+    if (in.player) in.late += in.player->late();
+    in.player.reset();
+    in.track = nullptr;
+    in.verdicts = {};
+    s_ = {};
+    command_ = 0;
+    length_ = remaining_ = 0;
+    exists_ = arrived_ = stops_ = false;
+    stuck_ = fault_ = ErrorId::none;
+    limiter_ = PathLimiter::none;
+}
+
+bool PathRun::over() const noexcept {
+    if (!exists_) return true;
+    const auto& in = *inside_;
+    return !in.player || (in.player->standing() && (stops_ || arrived_ || stuck_ != ErrorId::none)) || fault_ != ErrorId::none;
+}
+
+void PathRun::advance(Duration period) noexcept {
+    auto& in = *inside_;
+    tell();
+    for (GroupVerdict v; in.link.verdicts.try_pop(v);) {
+        if (v.life != in.life) continue;
+        if (v.standing) stuck_ = v.error;
+        in.verdicts[in.next_verdict++ % in.verdicts.size()] = v;
+    }
+    if (!exists_ || !in.player || fault_ != ErrorId::none) return;
+    const PathMotion& now = in.player->step(to_seconds(period));
+    s_ = {now.s, now.velocity, now.acceleration};
+    look();
+}
+
+/// Where that is for the members.
+void PathRun::look() noexcept {
+    auto& in = *inside_;
+    const std::uint32_t part = in.player->part();
+    const RunSection& run = in.track->section(part);
+    const double s = s_.position;
+    in.track->part.store(part, std::memory_order_relaxed);
+    in.track->s.store(s, std::memory_order_relaxed);
+    in.track->velocity.store(s_.velocity, std::memory_order_relaxed);
+    if (run.section.command == 0) return;  // it stands in front of the first stretch
+    const bool before = run.section.blend && s < run.section.begin + run.section.length / 2;
+    command_ = before ? run.before : run.section.command;
+    arrived_ = in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
+    length_ = before ? run.section.length / 2 : run.way;
+    remaining_ = before              ? run.section.begin + run.section.length / 2 - s
+                 : run.section.blend ? run.section.end() - s + run.rest
+                                     : std::max(run.corner - s, 0.0);
+    length_ = std::max(length_, remaining_);
+    if (arrived_) {
+        remaining_ = 0;
+        in.q = run.to;
+        in.velocity = in.acceleration = {};
+    } else {
+        in.at = way_point(run.section, run, s, in.arm.get(), in.tool, in.members, in.q);
+        if (!in.at.miss.ok()) {
+            fault_ = ErrorId::out_of_reach;
+            return;
+        }
+        in.q = in.at.q;
+        for (std::size_t k = 0; k < in.members; ++k) {
+            in.velocity[k] = in.at.first[k] * s_.velocity;
+            in.acceleration[k] = in.at.first[k] * s_.acceleration + in.at.second[k] * s_.velocity * s_.velocity;
+        }
+    }
+    for (std::size_t k = 0; k < in.members; ++k) {
+        states_[in.places[k]] = {in.q[k], in.velocity[k], in.acceleration[k]};
+        if (!before) end_[in.places[k]] = run.to[k];
+    }
+    see_limits();
+}
+
+void PathRun::see_limits() noexcept {
+    auto& in = *inside_;
+    limiter_ = PathLimiter::none;
+    if (in.player->standing()) return;
+    double most = 0;
+    for (std::size_t k = 0; k < in.members; ++k) {
+        const auto& limits = in.limits[k];
+        const double use = std::max(std::abs(in.velocity[k]) / limits.velocity, std::abs(in.acceleration[k]) / limits.acceleration);
+        if (use <= most) continue;
+        most = use;
+        narrowest_ = in.places[k];
+    }
+    if (in.wish.factors.velocity < 1) limiter_ = PathLimiter::override_factor;
+    else limiter_ = most >= in_use ? PathLimiter::axis : PathLimiter::command;
 }
 
 double PathRun::remaining_time() const noexcept {
-    const bool leads_there = exists_ && !stops_ && profile_.end().position == way_.length;
-    return leads_there ? std::max(0.0, profile_.duration() - to_seconds(elapsed_)) : 0;
+    const auto& in = *inside_;
+    if (!in.player || stops_ || arrived_) return 0;
+    const double ends = in.player->stretch_end();
+    return std::abs(ends - s_.position - remaining_) <= 1e-9 * std::max(1.0, ends) ? in.player->time_left() : 0;
 }
 
-PathLimiter PathRun::limiter() const noexcept {
-    if (over()) return PathLimiter::none;
-    if (factors_.velocity < 1) return PathLimiter::override_factor;
-    return wanted_.velocity >= limits_.along.velocity ? PathLimiter::axis : PathLimiter::command;
+std::uint32_t PathRun::late() const noexcept {
+    const auto& in = *inside_;
+    return in.late + (in.player ? in.player->late() : 0);
 }
 
 }  // namespace taktwerk::axes

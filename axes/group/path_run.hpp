@@ -1,67 +1,100 @@
 #pragma once
-// One way with its time: a scalar s(t), jerk-limited, from rest at its beginning to rest at its end, under the members' limits along it. Override,
-// halts and stops act on s alone, so that the way is the same whatever they do; and whatever they do the run ends at rest on the way. Real-time safe.
+// The way that a group goes, on the cycle's side: where the members are now, and how the way ends. Its shape and its time come from the service side
+// as committed stretches (docs/motion/path.md), each of which ends at rest on the way: override, halts and stops act on s alone, and take effect
+// when the planner has answered. Real-time safe but for construction and service().
 //
-// This is what a group asks of a path. Stretches of axes/path/ (curves, blends, look-ahead) take its place with the same questions.
+// A run is a path from rest to rest, through any number of commands that are blended; the next one is prepared meanwhile. A life is what follows a
+// restart: the members stand, and what was planned before counts no more.
+
+#include <array>
+#include <memory>
+#include <optional>
 
 #include "axes/group/group_command.hpp"
+#include "axes/group/group_members.hpp"
 #include "axes/group/group_view.hpp"
-#include "axes/group/straight_way.hpp"
-#include "axes/planner/profile.hpp"
+#include "axes/planner/motion.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
 
+class Kinematics;
+struct Pose;
+
 class PathRun {
 public:
-    /// From rest. `wanted`: 0 = what `limits` leave; more is held down to them. False: no motion can be planned (a limit is no number), and it is
-    /// over where it begins.
-    bool begin(const StraightWay& way, const WayLimits& limits, const PathDynamics& wanted, const Override& factors) noexcept;
+    PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle);
+    PathRun(PathRun&&) noexcept;
+    ~PathRun();
+
+    /// The planner's step. Service side: one thread, beside the cycle; not real-time.
+    void service();
+
+    /// The members stand where they are; whatever was on the way is forgotten. `factors` from now on. False: not now, ask again in the next cycle.
+    bool restart(const GroupMembers& members, const Override& factors) noexcept;
+    /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
+    /// False: not now.
+    bool send(CommandId id, const GroupCommand& command, const PathDynamics& dynamics, bool joins) noexcept;
+    /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
+    [[nodiscard]] std::optional<ErrorId> verdict(CommandId id) noexcept;
+    /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
+    [[nodiscard]] bool begin(CommandId id) noexcept;
     /// Nothing to run; the members stand.
-    void clear() noexcept { *this = {}; }
+    void clear() noexcept;
 
     /// One period on.
     void advance(Duration period) noexcept;
 
-    /// Other factors, from now on. Where the way left is too short for less acceleration or jerk they wait until it is not (G-071).
+    /// Other factors, from the planner's next answer on. Where the way left is too short for less acceleration or jerk they wait until it is not (G-071).
     void override_with(const Override& factors) noexcept;
     /// Comes to rest on the way, at its end at the latest. `ramp`: deceleration and jerk, 0 = the limits'.
-    void stop(const PathDynamics& ramp, const Override& factors, Duration period) noexcept;
+    void stop(const PathDynamics& ramp, const Override& factors) noexcept;
     /// After a stop: on to the end.
     void resume(const Override& factors) noexcept;
 
     [[nodiscard]] bool exists() const noexcept { return exists_; }
     /// At rest, and stays so by itself.
-    [[nodiscard]] bool over() const noexcept { return !exists_ || to_seconds(elapsed_) >= profile_.duration(); }
-    /// At rest at the end.
-    [[nodiscard]] bool arrived() const noexcept { return over() && s_.position == way_.length; }
+    [[nodiscard]] bool over() const noexcept;
+    /// At rest where the way of command() ends.
+    [[nodiscard]] bool arrived() const noexcept { return arrived_; }
     [[nodiscard]] bool stops() const noexcept { return stops_; }
+    /// The reason why it has come to rest before the end and finds no way on; none: it has not.
+    [[nodiscard]] ErrorId stuck() const noexcept { return stuck_; }
+    /// The set-point could not follow the way: out of reach, which the check before the start excludes. G-021
+    [[nodiscard]] ErrorId fault() const noexcept { return fault_; }
 
+    /// Whose way the set-point is on: from the middle of a blend on the later one's (G-061). 0: none.
+    [[nodiscard]] CommandId command() const noexcept { return command_; }
     [[nodiscard]] const MotionState& along() const noexcept { return s_; }
-    [[nodiscard]] MotionState of(std::size_t place) const noexcept { return way_.at(place, s_); }
-    [[nodiscard]] const JointVector& end() const noexcept { return way_.to; }
-    [[nodiscard]] double length() const noexcept { return way_.length; }
-    [[nodiscard]] double remaining() const noexcept { return way_.length - s_.position; }
-    /// s, of the plan that holds now; 0 where it does not lead to the end.
+    [[nodiscard]] MotionState of(std::size_t place) const noexcept { return states_[place]; }
+    /// Where the way of command() ends.
+    [[nodiscard]] const JointVector& end() const noexcept { return end_; }
+    [[nodiscard]] double length() const noexcept { return length_; }
+    [[nodiscard]] double remaining() const noexcept { return remaining_; }
+    /// s, of the stretch that runs; 0 where it does not lead to the end.
     [[nodiscard]] double remaining_time() const noexcept;
-    [[nodiscard]] PathLimiter limiter() const noexcept;
-    [[nodiscard]] std::uint8_t narrowest() const noexcept { return limits_.narrowest; }
+    [[nodiscard]] PathLimiter limiter() const noexcept { return limiter_; }
+    [[nodiscard]] std::uint8_t narrowest() const noexcept { return narrowest_; }
+    /// Plans that came after their place had been passed.
+    [[nodiscard]] std::uint32_t late() const noexcept;
 
 private:
-    [[nodiscard]] bool plan() noexcept;
-    void take(const Profile& profile) noexcept;
+    struct Inside;
+    void tell() noexcept;
+    void look() noexcept;
+    void see_limits() noexcept;
 
-    StraightWay way_;
-    WayLimits limits_;
-    PathDynamics wanted_;  // resolved: what the command may have, without factors
-    Override factors_;
-    Profile profile_;
-    Duration elapsed_{};  // since the profile began
-    int piece_ = 0;
+    std::unique_ptr<Inside> inside_;
+    std::array<MotionState, most_members> states_{};
+    JointVector end_{};
     MotionState s_;
-    bool exists_ = false;
-    bool stops_ = false;         // the goal is rest, not the end
-    bool plan_pending_ = false;  // factors that could not be taken yet
+    CommandId command_ = 0;
+    double length_ = 0, remaining_ = 0;
+    bool exists_ = false, arrived_ = false;
+    bool stops_ = false;  // the goal is rest, not the end
+    ErrorId stuck_ = ErrorId::none, fault_ = ErrorId::none;
+    PathLimiter limiter_ = PathLimiter::none;
+    std::uint8_t narrowest_ = 0;
 };
 
 }  // namespace taktwerk::axes

@@ -64,6 +64,9 @@ public:
     [[nodiscard]] const PathSection& section_at(double s) const noexcept { return sections_[index_at(s)]; }
     [[nodiscard]] std::size_t index_at(double s) const noexcept;
 
+    /// Takes out the first `count` sections, which nobody goes any more; the others stay where they are.
+    void forget(std::size_t count) { sections_.erase(sections_.begin(), sections_.begin() + static_cast<std::ptrdiff_t>(count)); }
+
     void clear() noexcept { sections_.clear(); }
 
 private:

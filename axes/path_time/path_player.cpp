@@ -43,4 +43,17 @@ const PathMotion& PathPlayer::step(double period) noexcept {
     return now_;
 }
 
+double PathPlayer::time_left() const noexcept {
+    if (standing()) return 0;
+    const TimePiece& last = stretch_->pieces[static_cast<std::size_t>(stretch_->count - 1)];
+    const TimePiece& piece = stretch_->pieces[static_cast<std::size_t>(piece_)];
+    return last.begin_time + last.duration - piece.begin_time - time_;
+}
+
+double PathPlayer::stretch_end() const noexcept {
+    if (stretch_ == nullptr) return now_.s;
+    const TimePiece& last = stretch_->pieces[static_cast<std::size_t>(stretch_->count - 1)];
+    return last.begin + last.length;
+}
+
 }  // namespace taktwerk::axes

@@ -19,6 +19,9 @@ public:
     /// The part of the curve that now().s lies on (TimedCurve::part_at).
     [[nodiscard]] std::uint32_t part() const noexcept { return part_; }
     [[nodiscard]] bool standing() const noexcept { return stretch_ == nullptr || piece_ >= stretch_->count; }
+    /// Until the end of the stretch that runs, where it stands: s. And where that is.
+    [[nodiscard]] double time_left() const noexcept;
+    [[nodiscard]] double stretch_end() const noexcept;
     /// Stretches that came after their place had been passed: the planner was late. It cost speed.
     [[nodiscard]] std::uint32_t late() const noexcept { return late_; }
 

@@ -33,7 +33,7 @@ int PathService::border(const StretchProgress& at) {
     return static_cast<int>(i + 1 >= pieces.size() ? pieces.size() : i);
 }
 
-void PathService::send(int at_piece, const RunTask& task, bool stands) {
+void PathService::send(int at_piece, const RunTask& task, bool stands, std::uint32_t revision) {
     TimeStretch* stretch = exchange_.free_stretch();
     stretch->id = ++ids_;
     stretch->follows = active_.id;
@@ -46,6 +46,7 @@ void PathService::send(int at_piece, const RunTask& task, bool stands) {
     sent_.to = task.to;
     sent_.factor = task.velocity_factor;
     sent_.stands = stands;
+    sent_.revision = revision;
     sent_.plan = plan_;
     pending_ = true;
 }
@@ -73,6 +74,7 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         pending_ = false;
         if (exchange_.progress().stretch != sent_.id) {
             ++late_;
+            lead_ = std::min(2 * lead_, most_lead);
             return PathAnswer::late;
         }
         exchange_.was_taken();
@@ -100,12 +102,12 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
             return PathAnswer::kept;
         }
         task.to = plan_.shape.end;
-        send(begin, task, true);
+        send(begin, task, true, wish.revision);
         return PathAnswer::offered;
     }
     task.to = std::min(curve.next_stop(task.from), final_end);
-    const bool same =
-        !active_.stands && task.velocity_factor == active_.factor && std::fabs(task.to - active_.to) <= 1e-12 * std::fabs(task.to);
+    const bool same = !active_.stands && task.velocity_factor == active_.factor && wish.revision == active_.revision &&
+                      std::fabs(task.to - active_.to) <= 1e-12 * std::fabs(task.to);
     if ((!at_rest && same) || !(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
     planner_.plan(curve, limits_, task, plan_, former);
     for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > TimeStretch::most_pieces; ++i) {
@@ -113,10 +115,11 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         planner_.plan(curve, limits_, task, plan_, former);
     }
     if (!plan_.found || plan_.pieces.size() > TimeStretch::most_pieces) {
+        if (at_rest) return PathAnswer::stuck;
         ++skip_;
         return PathAnswer::kept;
     }
-    send(begin, task, false);
+    send(begin, task, false, wish.revision);
     return PathAnswer::offered;
 }
 

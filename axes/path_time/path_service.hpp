@@ -17,6 +17,7 @@ struct PathWish {
     enum class Motion : std::uint8_t { stand, go };
     Motion motion = Motion::go;
     double velocity_factor = 1;  ///< [0, 1]; 0 stands
+    std::uint32_t revision = 0;  ///< another one: the curve's limits have changed, what runs is planned anew
 };
 
 enum class PathAnswer : std::uint8_t {
@@ -24,13 +25,14 @@ enum class PathAnswer : std::uint8_t {
     waiting,      ///< the last stretch was not taken yet
     offered,      ///< a new stretch is on its way
     kept,         ///< nothing better was found from there: what runs goes on to its stop
+    stuck,        ///< at rest, and no motion was found from there: it comes to none by itself
     late,         ///< the last stretch came too late; the next step tries from further on
 };
 
 class PathService {
 public:
     /// `limits` of the axes; `lead` [s]: a stretch begins at the earliest so long after the end of the piece that the cycle is on: at least what a plan takes
-    /// and the way to the cycle.
+    /// and the way to the cycle. Each that comes too late doubles it, up to most_lead.
     PathService(std::vector<PathAxisLimits> limits, StretchExchange& exchange, double lead)
         : limits_(std::move(limits)), exchange_(exchange), lead_(lead) {}
 
@@ -43,19 +45,23 @@ public:
     [[nodiscard]] std::uint32_t late() const noexcept { return late_; }
     [[nodiscard]] const RunPlan& last_plan() const noexcept { return plan_; }
 
+    static constexpr double most_lead = 0.5;  // s
+    [[nodiscard]] double lead() const noexcept { return lead_; }
+
 private:
     struct Sent {
         std::uint32_t id = 0;
         int at_piece = 0;
         double to = 0;
         double factor = 1;
+        std::uint32_t revision = 0;
         bool stands = false;  // because somebody wanted to
         RunPlan plan;
     };
 
     [[nodiscard]] int border(const StretchProgress& at);
     bool plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former);
-    void send(int at_piece, const RunTask& task, bool stands);
+    void send(int at_piece, const RunTask& task, bool stands, std::uint32_t revision);
 
     std::vector<PathAxisLimits> limits_;
     StretchExchange& exchange_;

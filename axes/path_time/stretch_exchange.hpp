@@ -45,6 +45,12 @@ public:
     }
     /// The last offer was taken: what the cycle ran before is the planner's again.
     void was_taken() noexcept { filled_ ^= 1u; }
+    /// As new, for another path. While the cycle uses it no more, and not yet again.
+    void reset() noexcept {
+        filled_ = 0;
+        offered_.store(nullptr, std::memory_order_relaxed);
+        progress_.store(0, std::memory_order_release);
+    }
 
     // The cycle's side.
 

@@ -152,7 +152,12 @@ enum class ErrorId : std::uint16_t {
     unknown_command = 0x0042,      ///< no command of this group that waits or runs has this CommandID
     nothing_interrupted = 0x0043,  ///< MC_GroupContinue, and no MC_GroupInterrupt before it
     not_at_interruption = 0x0044,  ///< a member is not where the path was interrupted
+    out_of_reach = 0x0045,         ///< the arm does not get to a place of the path, or not without leaving its way of standing
+    singular_path = 0x0046,        ///< a place of the path is too near to a singularity of the arm
+    invalid_arc = 0x0047,          ///< the points of an arc make none
+    half_turn = 0x0048,            ///< the tool shall turn by half a turn, and nothing says which way round
+    path_not_planned = 0x0049,     ///< no motion along the path was found within all limits
 };
-inline constexpr std::size_t error_id_count = 0x0045;
+inline constexpr std::size_t error_id_count = 0x004A;
 
 }  // namespace taktwerk::axes

@@ -92,6 +92,7 @@ public:
             out.machine.cams.push_back(std::move(entry.cam));
             out.warnings.insert(out.warnings.end(), entry.remarks.begin(), entry.remarks.end());
         }
+        for (const auto& entry : file_.groups) out.machine.axis_groups.push_back(made_of(reader_, entry, reader_.units_of_axes));
         list_files(out);
         check_wiring(out.machine);
         check_events(out.machine);
@@ -544,6 +545,7 @@ std::string file_path_of(std::string subject) {
     if (subject == "lcm.rate") return "hmi.rate";
     if (subject == "socket" || subject.rfind("lcm.", 0) == 0) return "hmi." + subject;
     static constexpr std::pair<std::string_view, std::string_view> names[] = {
+        {"axis_groups.", "groups."},
         {".following.", ".following_error."},
         {".windows.in_position_time", ".in_position.time"},
         {".windows.in_position", ".in_position.window"},

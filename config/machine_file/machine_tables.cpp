@@ -620,6 +620,8 @@ Table<MachineFile> machine_table() {
         "axes", [](F & m) -> auto& { return m.machine.axes; },
         by_name(section(axis_table()), [](runtime::AxisBinding& b) -> std::string& { return b.axis.name; }),
         "what programs move; none: only a bus"));
+    f.push_back(field("groups", &F::groups, by_name(section(group_table()), [](GroupEntry& g) -> std::string& { return g.group.name; }),
+                      "axes that move together on a path"));
     f.push_back(field("cams", &F::cams, by_name(section(cam_table()), [](CamEntry& c) -> std::string& { return c.cam.name; }),
                       "tables that slaves follow; programs may declare others"));
     f.push_back(field("programs", &F::programs,

@@ -7,6 +7,7 @@
 
 #include "config/machine_file/bus_tables.hpp"
 #include "config/machine_file/cam_tables.hpp"
+#include "config/machine_file/group_tables.hpp"
 #include "config/reading/measure.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "runtime/machine_config.hpp"
@@ -69,6 +70,7 @@ struct MachineFile {
     std::vector<SerialLineEntry> serial;
     std::vector<IoEntry> inputs, outputs;
     std::vector<CamEntry> cams;
+    std::vector<GroupEntry> groups;
     std::vector<ProgramFile> programs;
 };
 

@@ -2,6 +2,7 @@
 // How a group is: MC_GroupReadStatus, MC_GroupReadMotionState, MC_GroupReadError, MC_GroupReadCommandInfo, MC_GroupReadConfiguration,
 // MC_ReadAxisGroupInfo. PLCopen Part 4 v2.0. Real-time safe. What they give is the group's view; it goes back whenever Valid is FALSE.
 
+#include <cmath>
 #include <string_view>
 
 #include "fb_library/groups/group_block.hpp"
@@ -69,9 +70,11 @@ struct MC_GroupReadMotionState : GroupReadBlock<MC_GroupReadMotionState> {
         bool moves = view.path_velocity != 0 || view.path_acceleration != 0;
         for (const double velocity : view.set_velocity) moves = moves || velocity != 0;
         Standstill = !moves;
-        ConstantVelocity = view.path_velocity != 0 && view.path_acceleration == 0;
-        Accelerating = view.path_acceleration > 0;
-        Decelerating = view.path_acceleration < 0;
+        // A plan comes to its velocity as to a limit: what changes it by less than a twentieth in a second is constant.
+        constexpr double constant_share = 0.05;  // 1/s
+        ConstantVelocity = view.path_velocity != 0 && std::abs(view.path_acceleration) <= constant_share * view.path_velocity;
+        Accelerating = !ConstantVelocity && view.path_acceleration > 0;
+        Decelerating = !ConstantVelocity && view.path_acceleration < 0;
         ActiveCommandID = {view.active};
         return Reading::valid();
     }

@@ -19,6 +19,10 @@ using axes::MC_TransitionMode;
 using enum axes::MC_TransitionMode;
 using axes::MC_TransitionVelocity;
 using enum axes::MC_TransitionVelocity;
+using axes::MC_CIRC_MODE;
+using enum axes::MC_CIRC_MODE;
+using axes::MC_CIRC_PATHCHOICE;
+using enum axes::MC_CIRC_PATHCHOICE;
 using axes::MC_OrientationMode;
 using enum axes::MC_OrientationMode;
 
@@ -94,6 +98,8 @@ inline constexpr std::array<std::string_view, 5> transition_mode_names{"mcTMNone
                                                                        "mcTMCornerDistance", "mcTMMaxCornerDeviation"};
 inline constexpr std::array<std::string_view, 5> transition_velocity_names{"mcTVZero", "mcTVLow", "mcTVPrevious", "mcTVNext", "mcTVHigh"};
 inline constexpr std::array<std::string_view, 4> orientation_mode_names{"mcLinear", "mcJointInterpolated", "mcFixed", "mcPathBased"};
+inline constexpr std::array<std::string_view, 3> circ_mode_names{"mcBORDER", "mcCENTER", "mcRADIUS"};
+inline constexpr std::array<std::string_view, 2> circ_path_choice_names{"mcClockwise", "mcCounterClockwise"};
 inline constexpr std::array<std::string_view, 2> command_state_names{"mcAccepted", "mcActive"};
 }  // namespace detail
 
@@ -112,6 +118,8 @@ template <> struct PinTypeOf<MC_CoordSystem> { static constexpr PinType value{Pi
 template <> struct PinTypeOf<MC_TransitionMode> { static constexpr PinType value{PinKind::ENUM, "MC_TRANSITION_MODE", detail::transition_mode_names}; };
 template <> struct PinTypeOf<MC_TransitionVelocity> { static constexpr PinType value{PinKind::ENUM, "MC_TRANSITION_VELOCITY", detail::transition_velocity_names}; };
 template <> struct PinTypeOf<MC_OrientationMode> { static constexpr PinType value{PinKind::ENUM, "MC_ORIENTATION_MODE", detail::orientation_mode_names}; };
+template <> struct PinTypeOf<MC_CIRC_MODE> { static constexpr PinType value{PinKind::ENUM, "MC_CIRC_MODE", detail::circ_mode_names}; };
+template <> struct PinTypeOf<MC_CIRC_PATHCHOICE> { static constexpr PinType value{PinKind::ENUM, "MC_CIRC_PATHCHOICE", detail::circ_path_choice_names}; };
 template <> struct PinTypeOf<MC_CommandState> { static constexpr PinType value{PinKind::ENUM, "MC_COMMAND_STATE", detail::command_state_names}; };
 // clang-format on
 

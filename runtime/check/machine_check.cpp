@@ -36,6 +36,7 @@ public:
         check_serial(config_, errors_);
         check_axes(config_, errors_);
         for (auto& error : axes::check(config_.axis_groups, axes_)) errors_.push_back(std::move(error));
+        check_group_members();
         check_modbus(config_, errors_);
         check_hot_connect(config_, errors_);
         check_io();
@@ -46,6 +47,18 @@ public:
     }
 
 private:
+    /// A member that could follow no path would be missed by its group alone, and late.
+    void check_group_members() {
+        for (const auto& group : config_.axis_groups)
+            for (const auto& member : group.members)
+                for (const auto& binding : config_.axes) {
+                    if (binding.axis.name != member || (!binding.axis.encoder && binding.axis.modulo <= 0)) continue;
+                    problems_.add("group.member_kind", "axis_groups." + group.name,
+                                  fmt::format("axis '{}' {}, and a group cannot move it", member,
+                                              binding.axis.encoder ? "only measures" : "is a modulo axis"),
+                                  binding.axis.encoder ? "take it out of the group" : "take it out of the group, or its `modulo`");
+                }
+    }
     void check_numbers() {
         using namespace std::chrono_literals;
         if (config_.cycle < 100us || config_.cycle > 100ms)

@@ -52,6 +52,7 @@ void Machine::stop_bus() {
 void Machine::service(Instant now) {
     impl_->note(Call::service, now);
     impl_->service_bus(now);
+    impl_->body.axis_groups.service();
     impl_->programs.call_hooks();
     impl_->service_disk(now);
     for (std::size_t i = 0; i < modbus_count(); ++i) service_modbus(i, now);
@@ -59,7 +60,12 @@ void Machine::service(Instant now) {
 void Machine::service_bus(Instant now) {
     impl_->note(Call::bus, now);
     impl_->service_bus(now);
+    if (impl_->in_order()) impl_->body.axis_groups.service();
 }
+void Machine::service_groups() {
+    if (!impl_->in_order()) impl_->body.axis_groups.service();
+}
+std::size_t Machine::group_count() const noexcept { return impl_->body.axis_groups.size(); }
 void Machine::service_programs() {
     impl_->note_beside(Call::programs);
     impl_->programs.call_hooks();

@@ -70,6 +70,9 @@ public:
     void service(Instant now);
     /// Nothing in it waits: bus scripts, serial lines, services of the drives.
     void service_bus(Instant now);
+    /// The planners of groups of axes: tens of milliseconds where a path is long. Where the run is recorded service_bus() does it, in its order.
+    void service_groups();
+    [[nodiscard]] std::size_t group_count() const noexcept;
     /// start() and stop() of programs: foreign code, it may take any time.
     void service_programs();
     /// What is kept onto the disk: it waits until it is there.

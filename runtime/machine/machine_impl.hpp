@@ -53,6 +53,8 @@ struct Machine::Impl {
         if (!body.threads_beside) note(call, {}, index);
     }
     void service_bus(Instant now);
+    /// What is done beside the cycle has its place in a recording.
+    [[nodiscard]] bool in_order() const noexcept { return body.recorder != nullptr || body.replayed; }
     void service_disk(Instant now) {
         if (retain && !body.replayed) retain->step(now);
     }

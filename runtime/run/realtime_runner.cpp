@@ -113,6 +113,7 @@ Result<RealtimeReport> RealtimeRunner::start() {
     }
     beside_.emplace_back([this] { beside([this](Instant) { machine_.service_programs(); }); });
     beside_.emplace_back([this] { beside([this](Instant now) { machine_.service_disk(now); }); });
+    if (machine_.group_count() > 0 && !in_step_) beside_.emplace_back([this] { beside([this](Instant) { machine_.service_groups(); }); });
     for (std::size_t i = 0; i < machine_.modbus_count(); ++i) beside_.emplace_back([this, i] { modbus_thread(i); });
     if (machine_.slow_task_count() > 0) guard_ = std::thread{[this] { guard_thread(); }};
     watch_ = std::thread{[this] { watch_thread(); }};

@@ -1,5 +1,6 @@
 // A program moves a group of axes over a whole machine: real frames, simulated drives, virtual time.
 
+#include "axes/kinematics/kinematics.hpp"
 #include "axes/planner/motion.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -96,8 +97,12 @@ public:
     DrawsInMachine() { in_machine = true; }
 };
 
+std::shared_ptr<const axes::Kinematics> xyz() {
+    return std::make_shared<const axes::Kinematics>(axes::Kinematics::make({.arm = axes::CartesianAxes{}}).value());
+}
+
 MachineConfig with_group(std::size_t axes, const ProgramEntry* (*entry)() = entry_of<Draws>,
-                         axes::GroupKinematics kinematics = axes::GroupKinematics::none) {
+                         std::shared_ptr<const axes::Kinematics> kinematics = {}) {
     auto config = with_program(axes, entry);
     axes::AxisGroupConfig group{.name = "table", .members = {}, .kinematics = kinematics};
     for (auto& binding : config.axes) {
@@ -160,7 +165,7 @@ struct GroupWatch {
     double off = 0, worst_velocity = 0, worst_jerk = 0, worst_gap = 0;
 };
 
-void draw(std::size_t count, const ProgramEntry* (*entry)(), axes::GroupKinematics kinematics) {
+void draw(std::size_t count, const ProgramEntry* (*entry)(), const std::shared_ptr<const axes::Kinematics>& kinematics) {
     TestMachine m(with_group(count, entry, kinematics));
     GroupWatch watch(m, count);
     ASSERT_TRUE(m.up());
@@ -172,9 +177,9 @@ void draw(std::size_t count, const ProgramEntry* (*entry)(), axes::GroupKinemati
 }
 
 // G-033, G-036: two and three axes, over frames, there and back on one line.
-TEST(AxisGroupMachine, TwoAxesDrawALine) { draw(2, entry_of<Draws>, axes::GroupKinematics::none); }
-TEST(AxisGroupMachine, ThreeAxesDrawALine) { draw(3, entry_of<Draws>, axes::GroupKinematics::none); }
-TEST(AxisGroupMachine, ThreeAxesDrawALineInMachineCoordinates) { draw(3, entry_of<DrawsInMachine>, axes::GroupKinematics::identity); }
+TEST(AxisGroupMachine, TwoAxesDrawALine) { draw(2, entry_of<Draws>, nullptr); }
+TEST(AxisGroupMachine, ThreeAxesDrawALine) { draw(3, entry_of<Draws>, nullptr); }
+TEST(AxisGroupMachine, ThreeAxesDrawALineInMachineCoordinates) { draw(3, entry_of<DrawsInMachine>, xyz()); }
 
 // G-063: the stop of a program stays on the path.
 TEST(AxisGroupMachine, AStopOfTheProgramStaysOnTheLine) {

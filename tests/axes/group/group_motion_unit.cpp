@@ -9,6 +9,12 @@ namespace {
 
 using enum GroupState;
 
+/// A plan stays below what limits it, and comes within a hundredth of it (docs/motion/path.md).
+void expect_just_below(double velocity, double limit) {
+    EXPECT_LE(velocity, limit);
+    EXPECT_GE(velocity, 0.99 * limit);
+}
+
 // G-012, G-013, G-033 of one move. The way is 50 u (30, 40 in the axes) at 50 u/s: 30 and 40 u/s.
 TEST(GroupMotion, ALineInTheAxesIsStraightAndAllMembersAreSynchronized) {
     GroupRig rig(3);
@@ -22,9 +28,9 @@ TEST(GroupMotion, ALineInTheAxesIsStraightAndAllMembersAreSynchronized) {
     EXPECT_EQ(rig.view().state, GroupMoving);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(rig.axis(i).state, AxisState::SynchronizedMotion) << "the idle one too, " << i;
     rig.run(500);
-    EXPECT_NEAR(rig.view().set_velocity[0], 30, 1e-9);
-    EXPECT_NEAR(rig.view().set_velocity[1], 40, 1e-9);
-    EXPECT_NEAR(rig.view().path_velocity, 50, 1e-9);
+    expect_just_below(rig.view().set_velocity[0], 30);
+    expect_just_below(rig.view().set_velocity[1], 40);
+    expect_just_below(rig.view().path_velocity, 50);
     ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 2000));
     EXPECT_EQ(rig.axis(0).set_position, 30);
     EXPECT_EQ(rig.axis(1).set_position, 40);
@@ -36,25 +42,25 @@ TEST(GroupMotion, ALineInTheAxesIsStraightAndAllMembersAreSynchronized) {
     EXPECT_LE(rig.deviation({0, 0, 0}, {30, 40, 0}, from), 1e-9 * 50);
 }
 
-// O-3 of our oracles: a line of one axis is what the axis would do by itself, to the last bit and in the same cycles.
-TEST(GroupMotion, ALineOfOneAxisIsTheAxisOwnMove) {
-    GroupRig rig(1), alone(1);
-    rig.enable();
-    rig.run(2);
-    alone.run(2);
-    const auto move = rig.give(line({37.5}, 60));
-    ASSERT_EQ(move.error, ErrorId::none);
-    alone.step([&] {
-        EXPECT_EQ(alone.axes[0].submit({.kind = CommandKind::move_absolute, .position = 37.5, .velocity = 60}, Owner::program).error,
-                  ErrorId::none);
-    });
-    for (int i = 0; i < 1200; ++i) {
-        ASSERT_EQ(rig.axis(0).set_position, alone.axis(0).set_position) << i;
-        ASSERT_EQ(rig.axis(0).set_velocity, alone.axis(0).set_velocity) << i;
-        rig.step();
-        alone.step();
+// O-3 of our oracles: the planner of one axis is the exact optimum; a line of one axis takes within a hundredth as long, and two cycles.
+TEST(GroupMotion, ALineOfOneAxisIsAsFastAsTheAxisOwnMove) {
+    for (const double target : {37.5, 2.0, 0.05, 99.0}) {
+        GroupRig rig(1), alone(1);
+        rig.enable();
+        rig.run(2);
+        alone.run(2);
+        const auto move = rig.give(line({target}, 60));
+        ASSERT_EQ(move.error, ErrorId::none);
+        Submitted own;
+        alone.step(
+            [&] { own = alone.axes[0].submit({.kind = CommandKind::move_absolute, .position = target, .velocity = 60}, Owner::program); });
+        int cycles = 0, exact = 0;
+        ASSERT_TRUE(rig.until([&] { return ++cycles, rig.status(move.id) == CommandStatus::done; }, 4000));
+        ASSERT_TRUE(alone.until([&] { return ++exact, alone.axis(0).status(own.id) == CommandStatus::done; }, 4000));
+        EXPECT_EQ(rig.axis(0).set_position, target);
+        EXPECT_LE(cycles, exact * 1.01 + 3) << target;
+        EXPECT_GE(cycles, exact) << target;
     }
-    EXPECT_EQ(rig.axis(0).set_position, 37.5);
 }
 
 // G-030, G-034: limits of the axes along the way. y may go 20 u/s: a way of 3:4 goes 25 u/s, and y's acceleration of 400 leaves 500 on the path.
@@ -72,7 +78,7 @@ TEST(GroupMotion, TheSlowestMemberHoldsTheWayDown) {
             EXPECT_EQ(rig.view().limiting_place, 1);
         }
     }
-    EXPECT_NEAR(fastest, 25, 1e-9);
+    expect_just_below(fastest, 25);
     EXPECT_LE(hardest, 500 * (1 + 1e-9));
     EXPECT_GE(hardest, 450);  // sqrt(25 * 10000) = 500 would be reached just so with y's jerk of 8000 / 0.8
     EXPECT_EQ(rig.axis(1).set_position, 40);
@@ -138,7 +144,7 @@ TEST(GroupMotion, AStopStaysOnTheWayAndLocksTheGroup) {
     const auto from = rig.path.size();
     const auto move = rig.give(line({60, 80}, 100));
     rig.run(400);
-    EXPECT_NEAR(rig.view().path_velocity, 100, 1e-9);
+    expect_just_below(rig.view().path_velocity, 100);
     const auto stop = rig.give(simply(GroupCommandKind::stop, {.deceleration = 200}));
     EXPECT_EQ(rig.view().state, GroupStopping);
     EXPECT_EQ(rig.status(move.id), CommandStatus::aborted);
@@ -208,6 +214,7 @@ TEST(GroupMotion, ADirectMoveIsOneLineOfAllAxes) {
         const auto from = rig.path.size();
         ASSERT_EQ(rig.set(Override{factor, 1, 1}), ErrorId::none);
         const auto move = rig.give({.kind = GroupCommandKind::direct_absolute, .target = {20, -5, 1}});
+        rig.step();  // the planner's answer
         for (std::size_t i = 0; i < 3; ++i) EXPECT_NE(rig.axis(i).set_velocity, 0) << i;
         int moving = 0;
         ASSERT_TRUE(rig.until(
@@ -262,7 +269,7 @@ TEST(GroupMotion, AnOverrideOfZeroHoldsOnTheWay) {
     EXPECT_LT(held, 60);
     EXPECT_EQ(rig.set(Override{0.5, 1, 1}), ErrorId::none);
     rig.run(300);
-    EXPECT_NEAR(rig.view().path_velocity, 50, 1e-9);
+    expect_just_below(rig.view().path_velocity, 50);
     ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000));
     EXPECT_EQ(rig.point()[0], 60);
     // G-009, G-070: kept over disabling.
@@ -270,6 +277,22 @@ TEST(GroupMotion, AnOverrideOfZeroHoldsOnTheWay) {
     ASSERT_EQ(rig.give(simply(GroupCommandKind::disable)).error, ErrorId::none);
     rig.enable();
     EXPECT_EQ(rig.view().override_factors, (Override{0.5, 1, 1}));
+}
+
+// G-070: a command that comes while the override is 0 waits where it is to begin, and goes when it is more.
+TEST(GroupMotion, ACommandUnderAnOverrideOfZeroBeginsWhenItRises) {
+    GroupRig rig(2);
+    rig.enable();
+    ASSERT_EQ(rig.set(Override{0, 1, 1}), ErrorId::none);
+    const auto move = rig.give(line({6, 8}, 20));
+    ASSERT_EQ(move.error, ErrorId::none);
+    rig.run(200);
+    EXPECT_EQ(rig.view().state, GroupMoving);
+    EXPECT_EQ(rig.status(move.id), CommandStatus::active);
+    EXPECT_EQ(rig.point()[0], 0);
+    ASSERT_EQ(rig.set(Override{1, 1, 1}), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 2000));
+    EXPECT_EQ(rig.point()[1], 8);
 }
 
 // G-071: less acceleration than the rest of the way needs waits; on a way there is no coming back.
@@ -398,7 +421,7 @@ TEST(GroupMotion, ANewMotionEndsAnInterruption) {
 
 // G-006: MCS on the identity is ACS; what the group has no kinematics for is refused.
 TEST(GroupMotion, FramesNeedAKinematics) {
-    GroupRig plain(3), cartesian(3, GroupKinematics::identity), wide(4, GroupKinematics::identity);
+    GroupRig plain(3), cartesian(3, cartesian_arm()), wide(4, cartesian_arm());
     for (auto* rig : {&plain, &cartesian, &wide}) rig->enable();
     auto in_machine = line({3, 4, 5}, 10);
     in_machine.frame = mcMCS;
@@ -409,7 +432,7 @@ TEST(GroupMotion, FramesNeedAKinematics) {
     EXPECT_EQ(cartesian.submit(in_product).error, ErrorId::not_supported);
     auto turned = in_machine;
     turned.target[4] = 0.1;
-    EXPECT_EQ(cartesian.submit(turned).error, ErrorId::invalid_position);
+    EXPECT_EQ(cartesian.submit(turned).error, ErrorId::out_of_reach) << "X, Y, Z turn nothing";
     const auto from = cartesian.path.size();
     const auto move = cartesian.give(in_machine);
     ASSERT_EQ(move.error, ErrorId::none);
@@ -462,7 +485,13 @@ TEST(GroupMotion, NumbersThatAreNoneAreRefused) {
     EXPECT_EQ(rig.submit(jerky).error, ErrorId::invalid_dynamics);
     auto curved = line({1, 0}, 1);
     curved.transition = mcTMCornerDistance;
-    EXPECT_EQ(rig.submit(curved).error, ErrorId::not_supported);
+    curved.transition_parameter = -1;
+    EXPECT_EQ(rig.submit(curved).error, ErrorId::invalid_parameter);
+    curved.transition_parameter = none;
+    EXPECT_EQ(rig.submit(curved).error, ErrorId::invalid_parameter);
+    curved.transition = mcTMStartVelocity;
+    curved.transition_parameter = 1.5;
+    EXPECT_EQ(rig.submit(curved).error, ErrorId::invalid_parameter) << "a factor";
     GroupCommand back_in_time{.kind = GroupCommandKind::wait, .duration = -1ms};
     EXPECT_EQ(rig.submit(back_in_time).error, ErrorId::invalid_parameter);
     EXPECT_EQ(rig.view().state, GroupStandby);
@@ -479,13 +508,13 @@ TEST(GroupMotion, DynamicsThatAreNotSaidAreTheGroups) {
         rig.step();
         fastest = std::max(fastest, rig.view().path_velocity);
     }
-    EXPECT_NEAR(fastest, 100, 1e-9);
+    expect_just_below(fastest, 100);
     ASSERT_EQ(rig.set(WriteDynamics{WriteDynamics::Which::default_dynamics,
                                     {.velocity = 30, .acceleration = -1, .deceleration = -1, .jerk = -1}}),
               ErrorId::none);
     ASSERT_EQ(rig.give(line({0}, 0)).error, ErrorId::none);
     rig.run(500);
-    EXPECT_NEAR(rig.view().path_velocity, 30, 1e-9);
+    expect_just_below(rig.view().path_velocity, 30);
 }
 
 }  // namespace

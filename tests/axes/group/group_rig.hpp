@@ -12,6 +12,7 @@
 
 #include "axes/axis/plan_order.hpp"
 #include "axes/group/axis_groups.hpp"
+#include "axes/kinematics/kinematics.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
 #include "tests/axes/axis/motion_oracle.hpp"
 
@@ -27,14 +28,22 @@ inline AxisConfig group_axis(const std::string& name,
     return config;
 }
 
+using Arm = std::shared_ptr<const Kinematics>;
+inline Arm arm_of(const KinematicsDescription& description) {
+    auto made = Kinematics::make(description);
+    EXPECT_TRUE(made.ok());
+    return made.ok() ? std::make_shared<const Kinematics>(made.value()) : nullptr;
+}
+/// Members 1 to 3 are X, Y, Z.
+inline Arm cartesian_arm() { return arm_of({.arm = CartesianAxes{}}); }
+
 struct GroupRig {
     static constexpr Duration cycle = 1ms;
     static constexpr GroupRef ref{0};
 
     /// One group "g" of all axes; it is not enabled yet.
-    explicit GroupRig(std::vector<AxisConfig> configs, GroupKinematics kinematics = GroupKinematics::none)
-        : GroupRig(configs, all_of(configs, kinematics)) {}
-    explicit GroupRig(std::size_t count, GroupKinematics kinematics = GroupKinematics::none) : GroupRig(named(count), kinematics) {}
+    explicit GroupRig(std::vector<AxisConfig> configs, Arm kinematics = {}) : GroupRig(configs, all_of(configs, kinematics)) {}
+    explicit GroupRig(std::size_t count, Arm kinematics = {}) : GroupRig(named(count), kinematics) {}
     GroupRig(const std::vector<AxisConfig>& configs, const std::vector<AxisGroupConfig>& grouped) {
         for (std::size_t i = 0; i < configs.size(); ++i) drives.push_back(std::make_unique<FakeDrive>(cycle));
         axes.reserve(configs.size());
@@ -61,7 +70,7 @@ struct GroupRig {
         for (std::size_t i = 0; i < count; ++i) configs.push_back(group_axis("a" + std::to_string(i)));
         return configs;
     }
-    static std::vector<AxisGroupConfig> all_of(const std::vector<AxisConfig>& configs, GroupKinematics kinematics) {
+    static std::vector<AxisGroupConfig> all_of(const std::vector<AxisConfig>& configs, Arm kinematics) {
         AxisGroupConfig group{.name = "g", .members = {}, .kinematics = kinematics};
         for (const auto& config : configs) group.members.push_back(config.name);
         return {group};
@@ -86,6 +95,7 @@ struct GroupRig {
             look(i);
         }
         path.push_back(point());
+        groups.service();
     }
     bool until(const std::function<bool()>& condition, int most) {
         for (int i = 0; i < most && !condition(); ++i) step();
@@ -106,15 +116,20 @@ struct GroupRig {
         if (led && last.led) {
             const auto& from = last.at;
             const double grain = 1e-9;
-            EXPECT_LE(std::abs(now_at.velocity), limits.velocity * (1 + 1e-9)) << view_of(i);
-            EXPECT_LE(std::abs(now_at.acceleration), std::max(limits.acceleration, limits.deceleration) * (1 + 1e-9)) << view_of(i);
-            EXPECT_LE(std::abs(now_at.acceleration - from.acceleration), limits.jerk * t * (1 + 1e-6) + grain) << view_of(i);
+            EXPECT_LE(std::abs(now_at.velocity), limits.velocity * (1 + 1e-6)) << view_of(i);
+            EXPECT_LE(std::abs(now_at.acceleration), std::max(limits.acceleration, limits.deceleration) * (1 + 1e-6)) << view_of(i);
+            EXPECT_LE(std::abs(now_at.acceleration - from.acceleration), limits.jerk * t * (1 + 1e-3) + grain) << view_of(i);
             EXPECT_LE(std::abs(now_at.velocity - from.velocity - t * (now_at.acceleration + from.acceleration) / 2),
                       limits.jerk * t * t / 2 + grain)
                 << view_of(i);
             EXPECT_LE(std::abs(now_at.position - from.position - t * (now_at.velocity + from.velocity) / 2),
                       limits.jerk * t * t * t / 4 + grain)
                 << view_of(i);
+            // Told is shown: the group's view, the axis' view, and (by its oracle) the drive.
+            // But for the last digit that the axis' own coordinates cost.
+            EXPECT_NEAR(groups[0].view().set_position[i], now_at.position, 1e-15 * std::max(100.0, std::abs(now_at.position)))
+                << view_of(i);
+            EXPECT_EQ(groups[0].view().set_velocity[i], now_at.velocity) << view_of(i);
         }
         last = {now_at, led};
     }

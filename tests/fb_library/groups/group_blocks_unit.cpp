@@ -10,7 +10,7 @@ namespace {
 using axes::test::group_axis;
 
 struct EnabledPlc : GroupPlc {
-    explicit EnabledPlc(std::size_t count, axes::GroupKinematics kinematics = axes::GroupKinematics::none) : GroupPlc(count, kinematics) {
+    explicit EnabledPlc(std::size_t count, axes::test::Arm kinematics = {}) : GroupPlc(count, kinematics) {
         MC_GroupEnable enable;
         carry_out(enable);
     }
@@ -175,9 +175,10 @@ TEST(GroupBlocks, StatusIsExactlyOneOfSix) {
     plc.run(200);
     EXPECT_TRUE(motion.ConstantVelocity);
     stop.Execute = true;
-    plc.run(3);
+    plc.scan();
     EXPECT_TRUE(status.GroupStopping);
-    EXPECT_TRUE(motion.Decelerating);
+    ASSERT_TRUE(plc.until([&] { return motion.Decelerating; }, 90))
+        << "the planner's answer comes behind its lead of 8 ms and a piece of 40";
     ASSERT_TRUE(plc.until([&] { return stop.Done; }, 300));
     EXPECT_TRUE(status.GroupStopping);
     stop.Execute = false;
@@ -379,7 +380,7 @@ TEST(GroupBlocks, OverrideWritesWhileEnabledAndStays) {
 }
 
 TEST(GroupBlocks, ValuesAreReadInTheFramesThatThereAre) {
-    EnabledPlc plc(3, axes::GroupKinematics::identity);
+    EnabledPlc plc(3, axes::test::cartesian_arm());
     MC_MoveLinearAbsolute move;
     move.Position.C.Tcp = {.X = 3, .Y = 4, .Z = 12};
     move.CoordSystem = mcMCS;
@@ -406,9 +407,9 @@ TEST(GroupBlocks, ValuesAreReadInTheFramesThatThereAre) {
     };
     move.Execute = true;
     plc.run(500);
-    EXPECT_NEAR(velocity.Velocity[0], 3, 1e-9);
-    EXPECT_NEAR(velocity.Velocity[2], 12, 1e-9);
-    EXPECT_NEAR(velocity.PathVelocity, 13, 1e-9);
+    EXPECT_NEAR(velocity.Velocity[0], 3, 0.03);
+    EXPECT_NEAR(velocity.Velocity[2], 12, 0.12);
+    EXPECT_NEAR(velocity.PathVelocity, 13, 0.13);
     EXPECT_NEAR(place.Position.C.Tcp.Z, 4 * place.Position.C.Tcp.X, 1e-9);
     EXPECT_EQ(target.Position.A.Axes[2], 12);
     EXPECT_EQ(flange.ErrorID, ErrorId::not_supported);
@@ -476,7 +477,7 @@ TEST(GroupBlocks, WaitsAndDefaultsAreCommandsLikeOthers) {
     EXPECT_NE(wait.CommandID.id, 0u);
     ASSERT_TRUE(plc.until([&] { return wait.Done; }, 40));
     plc.run(200);
-    EXPECT_NEAR(plc.rig.axis(0).set_velocity, 20, 1e-9);
+    EXPECT_NEAR(plc.rig.axis(0).set_velocity, 20, 0.2);
     halt.Execute = true;
     plc.run(2);
     EXPECT_TRUE(move.CommandAborted);

@@ -11,9 +11,7 @@
 namespace taktwerk::fb {
 
 struct GroupPlc {
-    explicit GroupPlc(std::size_t count, axes::GroupKinematics kinematics = axes::GroupKinematics::none) : rig(count, kinematics) {
-        bind();
-    }
+    explicit GroupPlc(std::size_t count, axes::test::Arm kinematics = {}) : rig(count, kinematics) { bind(); }
     GroupPlc(const std::vector<axes::AxisConfig>& configs, const std::vector<axes::AxisGroupConfig>& groups) : rig(configs, groups) {
         bind();
     }

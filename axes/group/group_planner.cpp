@@ -1,0 +1,227 @@
+#include "axes/group/group_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/path/transition.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+PathFeed feed_of(const PathDynamics& d) noexcept {
+    return {std::max(d.velocity, 0.0), std::max(d.acceleration, 0.0), std::max(d.deceleration, 0.0), std::max(d.jerk, 0.0)};
+}
+
+/// Braking from v, limited in jerk.
+double stopping_way(double v, double a, double j) noexcept {
+    return v * j >= a * a ? v * v / (2 * a) + v * a / (2 * j) : v * std::sqrt(v / j);
+}
+
+}  // namespace
+
+void GroupPlanner::say(CommandId id, ErrorId error, bool standing) { (void)link_.verdicts.try_push({life_, id, error, standing}); }
+
+void GroupPlanner::restart(const GroupOrder& order) {
+    life_ = order.life;
+    wish_ = order;
+    ++revision_;
+    moves_.clear();
+    first_.reset();
+    runs_ = {};
+    for (auto& track : link_.tracks) track.ready.store(0, std::memory_order_release);
+    next_ = 0;
+    space_ = {arm_, order.tool, order.members, order.limits};
+    end_ = {order.from, {}};
+    if (arm_ != nullptr) end_.configuration.branch = arm_->configuration(joints_of(order.from)).branch;
+}
+
+void GroupPlanner::take(const GroupOrder& order) {
+    switch (order.kind) {
+        case GroupOrder::Kind::restart: restart(order); break;
+        case GroupOrder::Kind::move:
+            if (order.life == life_) moves_.push_back(order);
+            break;
+        case GroupOrder::Kind::wish: {
+            const bool other = order.factors.acceleration != wish_.factors.acceleration || order.factors.jerk != wish_.factors.jerk;
+            if (other) ++revision_;
+            wish_ = order;
+            break;
+        }
+    }
+}
+
+void GroupPlanner::step() {
+    GroupOrder order;
+    while (link_.orders.try_pop(order)) take(order);
+    place_moves();
+    if (next_ > 1) feed(*runs_[next_ % 2]);
+    if (next_ > 0) feed(*runs_[(next_ - 1) % 2]);
+}
+
+void GroupPlanner::place_moves() {
+    while (!moves_.empty()) {
+        const GroupOrder& move = moves_.front();
+        if (!first_) first_ = shape_of(move, end_, space_);
+        if (first_->error != ErrorId::none || first_->empty) say(move.id, first_->error);
+        else if (!place(move, *first_)) return;  // later: no track is free yet
+        else end_ = first_->end;
+        moves_.pop_front();
+        first_.reset();
+    }
+}
+
+bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
+    Run* run = last();
+    const bool joins = run != nullptr && run->open && move.joins && run->curve.seen.back().run.through_arm == shape.through_arm;
+    if (joins) {
+        const std::uint32_t behind = run->curve.forgotten + static_cast<std::uint32_t>(run->curve.seen.size());
+        if (behind + 2 - run->track.part.load(std::memory_order_relaxed) >= RunTrack::most_sections) return false;
+        if (append(*run, move, shape, true)) return true;
+    }
+    if (run != nullptr) run->open = false;
+    const std::uint64_t begun = link_.at_run.load(std::memory_order_acquire);
+    const std::uint32_t runs_begun = begun >> 32 == life_ ? static_cast<std::uint32_t>(begun) : 0;
+    if (next_ > 1 && runs_begun < next_) return false;  // its track is still gone
+    RunTrack& track = link_.tracks[next_ % 2];
+    track.ready.store(0, std::memory_order_release);
+    track.exchange.reset();
+    track.part.store(0, std::memory_order_relaxed);
+    track.s.store(0, std::memory_order_relaxed);
+    track.velocity.store(0, std::memory_order_relaxed);
+    auto& made = runs_[next_ % 2];
+    made = std::make_unique<Run>(space_, track, lead_);
+    made->first = move.id;
+    ++next_;
+    return append(*made, move, shape, false);
+}
+
+BlendRequest GroupPlanner::blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const {
+    const double parameter = move.command.transition_parameter;
+    const auto& curve = run.curve;
+    const auto& before = curve.path.sections().back();
+    const auto dynamics = [&] {
+        PathFeed feed = curve.feed_at(curve.path.length());
+        const auto said = feed_of(move.command.dynamics);
+        if (said.velocity > 0) feed.velocity = std::min(feed.velocity, said.velocity);
+        if (said.acceleration > 0) feed.acceleration = std::min(feed.acceleration, said.acceleration);
+        return feed;
+    };
+    switch (move.command.transition) {
+        case mcTMNone: break;
+        case mcTMCornerDistance: return {BlendRule::corner_distance, parameter};
+        case mcTMMaxCornerDeviation: return {BlendRule::corner_deviation, parameter};
+        case mcTMStartVelocity: return start_velocity_transition(parameter, curve.feed_at(curve.path.length()), dynamics());
+        case mcTMConstantVelocity:
+            return constant_velocity_transition(parameter, curve.feed_at(curve.path.length()), dynamics(),
+                                                before.element.at(before.element.length()).first, shape.element.at(0).first);
+    }
+    return {};
+}
+
+bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& shape, bool blended) {
+    auto& curve = run.curve;
+    PathMove element;
+    element.element = shape.element;
+    element.chart = shape.chart;
+    element.feed = feed_of(move.command.dynamics);
+    element.command = move.id;
+    const BlendRequest request = blended ? blend_of(run, move, shape) : BlendRequest{};
+    const Path kept = blended ? curve.path : Path{};
+    const std::size_t known = curve.seen.size();
+    const double before_velocity = known > 0 ? curve.path.sections().back().feed.velocity : 0;
+    const auto joint = curve.path.append(element, request, run.final_end);
+    if (!joint.ok()) return false;
+    if (joint.value() == PathJoint::stop) {  // a corner at rest ends a run: its point is stood at, exactly
+        curve.path = kept;
+        return false;
+    }
+    RunCurve::Seen corner;
+    const auto fill = [&] {
+        const auto& all = curve.path.sections();
+        corner = {};
+        if (all.size() < 2 || !all[all.size() - 2].blend || all[all.size() - 2].command != move.id) return;
+        corner.run.through_arm = shape.through_arm;
+        corner.run.configuration = end_.configuration;
+        corner.run.before = curve.seen[known - 1].run.section.command;
+        corner.run.way = shape.element.length();
+        corner.run.rest = all.back().length;
+        corner.run.to = shape.end.members;
+        corner.run.section.command = move.id;
+        corner.members = {end_.members};
+        const double one = before_velocity;
+        const double other = element.feed.velocity;
+        if (one > 0 && other > 0) {
+            if (move.command.buffer_mode == mcBlendingPrevious) corner.velocity = one;
+            if (move.command.buffer_mode == mcBlendingNext) corner.velocity = other;
+            if (move.command.buffer_mode == mcBlendingHigh) corner.velocity = std::max(one, other);
+        }
+    };
+    fill();
+    if (corner.run.section.command != 0 &&
+        refuse_blend(curve.path.sections()[curve.path.sections().size() - 2], corner.run, end_, space_) != ErrorId::none) {
+        curve.path = kept;  // the corner itself is sound: it is stood at
+        return false;
+    }
+    const auto& all = curve.path.sections();
+    const bool with_corner = corner.run.section.command != 0;
+    curve.seen.resize(all.size() - (with_corner ? 2 : 1));
+    if (with_corner) curve.seen.push_back(corner);
+    RunCurve::Seen seen;
+    seen.run.through_arm = shape.through_arm;
+    seen.run.configuration = end_.configuration;
+    seen.run.section.command = move.id;
+    seen.run.corner = all.back().begin + all.back().length;
+    seen.run.way = shape.element.length();
+    seen.run.to = shape.end.members;
+    seen.members = shape.members;
+    curve.seen.push_back(seen);
+    run.track.last.store(move.id, std::memory_order_release);
+    return true;
+}
+
+/// Up to where nothing that may still come can bend the path. As long as there is time for it, room is left for a blend at the end.
+double GroupPlanner::final_end(const Run& run) const {
+    const double full = run.curve.path.length();
+    if (!run.open || run.final_end >= full) return full;
+    const auto& section = run.curve.path.sections().back();
+    const double half = full - std::min(section.element.length() / 2, section.length);
+    const double s = std::max(run.track.s.load(std::memory_order_relaxed), run.curve.begin());
+    const AlongLimits l = run.curve.along(std::min(std::max(s, section.begin), full));
+    const double soon = 6 * run.service.lead();
+    const double v = std::min(run.track.velocity.load(std::memory_order_relaxed) + l.acceleration * soon, l.velocity);
+    return half - s > stopping_way(v, l.deceleration, l.jerk) + v * soon ? std::max(half, run.final_end) : full;
+}
+
+void GroupPlanner::publish(Run& run) {
+    const auto& all = run.curve.path.sections();
+    for (std::size_t i = 0; i < all.size() && all[i].begin < run.final_end; ++i) {
+        const std::uint32_t part = run.curve.forgotten + static_cast<std::uint32_t>(i);
+        if (part < run.published) continue;
+        RunSection& slot = run.track.sections[part % RunTrack::most_sections];
+        slot = run.curve.seen[i].run;
+        slot.section = all[i];
+        run.published = part + 1;
+    }
+}
+
+void GroupPlanner::feed(Run& run) {
+    run.curve.forget_before(run.track.part.load(std::memory_order_relaxed));
+    run.curve.wish(wish_.stands, wish_.factors, wish_.ramp);
+    run.final_end = final_end(run);
+    publish(run);
+    PathWish wish;
+    wish.motion = wish_.stands ? PathWish::Motion::stand : PathWish::Motion::go;
+    wish.velocity_factor = wish_.factors.velocity;
+    wish.revision = revision_;
+    const PathAnswer answer = run.service.step(run.curve, run.final_end, wish);
+    if (answer == PathAnswer::offered && !run.offered) {
+        run.offered = true;
+        run.track.ready.store(GroupLink::both(life_, run.first), std::memory_order_release);
+    }
+    if (answer == PathAnswer::stuck && !run.said_stuck) {
+        run.said_stuck = true;
+        say(run.curve.path.section_at(run.service.end()).command, ErrorId::path_not_planned, true);
+    }
+}
+
+}  // namespace taktwerk::axes

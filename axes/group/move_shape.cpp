@@ -1,0 +1,193 @@
+#include "axes/group/move_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "axes/group/written_pose.hpp"
+#include "axes/path/arc.hpp"
+#include "axes/pose_math.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+/// Nearer to a singularity than this a path is refused: 1 / measure says how fast a joint has to be.
+constexpr double least_measure = 0.01;
+/// Length of a radian of orientation: pose paths count turns in it.
+constexpr double turn_lever = 1;
+
+bool turns(const Kinematics& arm) noexcept {
+    const auto which = arm.commands();
+    return which[3] || which[4] || which[5];
+}
+
+ErrorId error_of(const Miss& miss) noexcept {
+    switch (miss.fault) {
+        case KinematicFault::none: return ErrorId::none;
+        case KinematicFault::joint_limit: return ErrorId::beyond_software_limit;
+        case KinematicFault::singular: return ErrorId::singular_path;
+        default: return ErrorId::out_of_reach;
+    }
+}
+
+ErrorId within(const MemberVector& at, const MoveSpace& space) noexcept {
+    for (std::size_t i = 0; i < space.members; ++i) {
+        const double digits = 1e-12 * std::max(1.0, std::abs(at[i]));
+        if (at[i] > space.limits[i].high + digits || at[i] < space.limits[i].low - digits) return ErrorId::beyond_software_limit;
+    }
+    return space.arm != nullptr ? error_of(space.arm->limits_of(joints_of(at))) : ErrorId::none;
+}
+
+Configuration any_turns(Branch branch) noexcept {
+    Configuration c;
+    c.branch = branch;
+    return c;
+}
+
+MoveShape refused(ErrorId error) {
+    MoveShape shape;
+    shape.error = error;
+    return shape;
+}
+
+/// The members on a straight line of their own.
+MoveShape joint_line(const MemberVector& to, const MoveEnd& from, const MoveSpace& space) {
+    MoveShape shape;
+    shape.error = within(to, space);
+    if (shape.error != ErrorId::none) return shape;
+    PathVector a = PathVector::Zero(), b = PathVector::Zero();
+    for (std::size_t i = 0; i < space.members; ++i) {
+        a[static_cast<Eigen::Index>(i)] = from.members[i];
+        b[static_cast<Eigen::Index>(i)] = to[i];
+    }
+    shape.end.members = to;
+    if (space.arm != nullptr) shape.end.configuration = any_turns(space.arm->configuration(joints_of(to)).branch);
+    shape.empty = a == b;
+    if (!shape.empty) shape.element = PathElement::line(a, b);
+    shape.members = {from.members};
+    return shape;
+}
+
+Pose goal_of(const GroupOrder& move, const Pose& start) noexcept {
+    const Pose given = pose_of_six(move.command.target);
+    if (!is_relative(move.command.kind)) return composed(move.frame, given);
+    // A distance in the directions of its frame; its turns are about the tool's point, in the frame's directions too.
+    const Eigen::Quaterniond frame = orientation_of(move.frame);
+    const Eigen::Quaterniond turn = frame * orientation_of(given) * frame.conjugate();
+    return pose_of(position_of(start) + frame * position_of(given), turn * orientation_of(start));
+}
+
+Eigen::Vector3d seen_in(const GroupOrder& move, const Pose& start, const std::array<double, 3>& point) noexcept {
+    const Eigen::Vector3d p(point[0], point[1], point[2]);
+    if (is_relative(move.command.kind)) return position_of(start) + orientation_of(move.frame) * p;
+    return position_of(move.frame) + orientation_of(move.frame) * p;
+}
+
+Result<PathElement> arc_of(const GroupOrder& move, const Pose& start, const PathVector& from, const PathVector& to) {
+    const auto& circle = move.command.circle;
+    const auto sense = circle.clockwise ? ArcSense::clockwise : ArcSense::counter_clockwise;
+    const Eigen::Quaterniond frame = orientation_of(move.frame);
+    const Eigen::Vector3d aux(circle.aux[0], circle.aux[1], circle.aux[2]);
+    switch (circle.mode) {
+        case mcBORDER: return arc_over_border(from, seen_in(move, start, circle.aux), to);
+        case mcCENTER:
+            return arc_about_centre(from, seen_in(move, start, circle.aux), to, frame * Eigen::Vector3d::UnitZ(), sense,
+                                    std::max(circle.tolerance, 1e-6));
+        case mcRADIUS: break;
+    }
+    return arc_of_radius(from, to, frame * aux, sense);
+}
+
+/// Everywhere along it: reached by the same way of the arm, inside the limits, not singular.
+void walk(MoveShape& shape, const MoveEnd& from, const MoveSpace& space) {
+    PathSection whole;
+    whole.element = shape.element;
+    whole.chart = shape.chart;
+    whole.length = shape.element.length();
+    RunSection run;
+    run.through_arm = true;
+    run.configuration = from.configuration;
+    constexpr int least = 64, most = 2048;
+    const double size = std::max(shape.element.feature(whole.length / 2) / 2, whole.length / most);
+    const int steps = std::clamp(static_cast<int>(std::min(whole.length / size, 1.0 * most)), least, most);
+    MemberVector near = from.members;
+    for (int i = 0; i <= steps; ++i) {
+        const WayPoint w = way_point(whole, run, whole.length * i / steps, space.arm, space.tool, space.members, near);
+        shape.error = error_of(w.miss);
+        if (shape.error == ErrorId::none && space.arm->singularity(joints_of(w.q)).measure < least_measure)
+            shape.error = ErrorId::singular_path;
+        if (shape.error == ErrorId::none) shape.error = within(w.q, space);
+        if (shape.error != ErrorId::none) return;
+        shape.members.push_back(near = w.q);
+    }
+    shape.end = {near, from.configuration};
+}
+
+}  // namespace
+
+Pose pose_of_turns(const std::array<double, 3>& place, const std::array<double, 3>& turns) noexcept {
+    return pose_of_six({place[0], place[1], place[2], turns[0], turns[1], turns[2]});
+}
+
+Pose pose_of_six(const JointVector& six) noexcept {
+    using Eigen::AngleAxisd;
+    using Eigen::Vector3d;
+    const Eigen::Quaterniond turn =
+        AngleAxisd(six[5], Vector3d::UnitZ()) * AngleAxisd(six[4], Vector3d::UnitY()) * AngleAxisd(six[3], Vector3d::UnitX());
+    return pose_of(Vector3d(six[0], six[1], six[2]), turn);
+}
+
+MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
+    const auto kind = move.command.kind;
+    const bool direct = kind == GroupCommandKind::direct_absolute || kind == GroupCommandKind::direct_relative;
+    if (move.command.frame == mcACS) {
+        MemberVector to = move.target;
+        if (is_relative(kind))
+            for (std::size_t i = 0; i < space.members; ++i) to[i] += from.members[i];
+        return joint_line(to, from, space);
+    }
+    if (space.arm == nullptr) return refused(ErrorId::no_kinematics);
+    const ForwardResult here = space.arm->forward(joints_of(from.members), space.tool);
+    if (!here.miss.ok()) return refused(error_of(here.miss));
+    const Pose start = here.pose, goal = goal_of(move, start);
+    const AxisSolution there = space.arm->inverse(goal, space.tool, direct ? Configuration{} : from.configuration, joints_of(from.members));
+    if (!there.ok()) return refused(error_of(there.miss));
+    if (direct) return joint_line(members_of(there.axes), from, space);
+
+    MoveShape shape;
+    shape.through_arm = true;
+    shape.chart = {start.orientation, turns(*space.arm) ? turn_lever : 0};
+    const Eigen::Vector3d turn = rotation_between(orientation_of(start), orientation_of(goal));
+    if (turn.norm() > std::numbers::pi - 1e-9) return refused(ErrorId::half_turn);  // G-043: which way round is nobody's choice
+    PathVector a = PathVector::Zero(), b = PathVector::Zero();
+    a.head<3>() = position_of(start);
+    b.head<3>() = position_of(goal);
+    b.segment<3>(3) = shape.chart.lever * turn;
+    if (is_circular(kind)) {
+        auto arc = arc_of(move, start, a, b);
+        if (!arc.ok()) return refused(ErrorId::invalid_arc);
+        shape.element = arc.value();
+    } else {
+        // Nothing but the last digits of going through the arm and back.
+        shape.empty = (b - a).norm() <= 1e-12 * std::max(1.0, a.norm());
+        shape.end = from;
+        if (shape.empty) return shape;
+        shape.element = PathElement::line(a, b);
+    }
+    walk(shape, from, space);
+    return shape;
+}
+
+ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveEnd& near, const MoveSpace& space) {
+    if (!at.through_arm) return ErrorId::none;  // between two lines inside the limits it is inside
+    constexpr int steps = 16;
+    for (int i = 0; i <= steps; ++i) {
+        const WayPoint w = way_point(blend, at, blend.begin + blend.length * i / steps, space.arm, space.tool, space.members, near.members);
+        if (const auto error = error_of(w.miss); error != ErrorId::none) return error;
+        if (space.arm->singularity(joints_of(w.q)).measure < least_measure) return ErrorId::singular_path;
+        if (const auto error = within(w.q, space); error != ErrorId::none) return error;
+    }
+    return ErrorId::none;
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,43 @@
+#pragma once
+// A command as a curve: from where the move before it ends, checked along its whole length before anything moves. Pure; service side.
+
+#include <vector>
+
+#include "axes/group/group_link.hpp"
+#include "core/result.hpp"
+
+namespace taktwerk::axes {
+
+/// Where a chain of moves has come to.
+struct MoveEnd {
+    MemberVector members{};
+    Configuration configuration;  ///< of the arm there, turns left open
+};
+
+struct MoveShape {
+    ErrorId error = ErrorId::none;
+    bool empty = false;  ///< it is there already
+    PathElement element;
+    PathChart chart{};
+    bool through_arm = false;
+    std::vector<MemberVector> members;  ///< along it, at even distances
+    MoveEnd end;
+};
+
+struct MoveSpace {
+    const Kinematics* arm = nullptr;
+    Pose tool{};
+    std::size_t members = 0;
+    std::array<MemberLimits, max_path_axes> limits{};
+};
+
+/// Errors: out_of_reach, singular_path, beyond_software_limit, invalid_arc, half_turn, no_kinematics.
+[[nodiscard]] MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space);
+
+/// A blend's points, likewise. none: it can be gone.
+[[nodiscard]] ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveEnd& near, const MoveSpace& space);
+
+/// An orientation as MC_CART_REF has it: turns about z, then the new y, then the new x, rad; as a pose.
+[[nodiscard]] Pose pose_of_six(const JointVector& six) noexcept;
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,58 @@
+// `groups:` of a machine file: what the arm becomes. What must be refused, with its line and column: tests/config/bad/group_*.yaml.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "axes/kinematics/kinematics.hpp"
+#include "config/machine_file/machine_loader.hpp"
+
+namespace taktwerk::config {
+namespace {
+
+LoadedMachine loaded_groups() {
+    auto result = load_machine(std::string(TAKTWERK_SOURCE_DIR) + "/tests/config/good/groups.yaml");
+    if (const auto* errors = std::get_if<1>(&result)) {
+        for (const auto& error : *errors) ADD_FAILURE() << error.text();
+        return {};
+    }
+    return std::get<0>(std::move(result));
+}
+
+TEST(GroupsOfAFile, TheArmStandsWhereItsAxesSay) {
+    const auto machine = loaded_groups().machine;
+    ASSERT_EQ(machine.axis_groups.size(), 2u);
+    const auto& arm = machine.axis_groups[0];
+    EXPECT_EQ(arm.name, "arm");
+    EXPECT_EQ(arm.members, (std::vector<std::string>{"a", "b", "z", "c"}));
+    EXPECT_EQ(arm.default_dynamics.velocity, 100);
+    EXPECT_EQ(arm.default_dynamics.acceleration, 0);
+    EXPECT_EQ(arm.default_dynamics.jerk, 1000);
+    ASSERT_TRUE(arm.kinematics);
+    // a = 30 deg; b = 20 deg counts backwards from 10: 10 - 20 = -10 deg of the picture. The base stands at x = 1000 mm, turned by 90 deg.
+    const auto at = arm.kinematics->forward({30, 20, 5, 0, 0, 0}, {});
+    ASSERT_TRUE(at.miss.ok());
+    const double degree = std::numbers::pi / 180;
+    const double x = 200 * std::cos(30 * degree) + 150 * std::cos(20 * degree),
+                 y = 200 * std::sin(30 * degree) + 150 * std::sin(20 * degree);
+    EXPECT_NEAR(at.pose.position[0], 1000 - y, 1e-9);
+    EXPECT_NEAR(at.pose.position[1], x, 1e-9);
+    EXPECT_NEAR(at.pose.position[2], 35, 1e-9);
+    EXPECT_TRUE(arm.kinematics->limits_of({0, 119, 0, 0, 0, 0}).ok());
+    EXPECT_FALSE(arm.kinematics->limits_of({0, 121, 0, 0, 0, 0}).ok());
+}
+
+// Axes in different units of length make one machine in the group's unit.
+TEST(GroupsOfAFile, UnitsOfAxesBecomeTheGroups) {
+    const auto machine = loaded_groups().machine;
+    ASSERT_EQ(machine.axis_groups.size(), 2u);
+    const auto& portal = machine.axis_groups[1];
+    ASSERT_TRUE(portal.kinematics);
+    const auto at = portal.kinematics->forward({7, 7, 0, 0, 0, 0}, {});
+    EXPECT_NEAR(at.pose.position[0], 70, 1e-9) << "cm";
+    EXPECT_NEAR(at.pose.position[1], 7, 1e-9);
+}
+
+}  // namespace
+}  // namespace taktwerk::config
