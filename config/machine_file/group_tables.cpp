@@ -9,6 +9,7 @@
 
 #include "axes/group/written_pose.hpp"
 #include "axes/kinematics/kinematics.hpp"
+#include "config/machine_file/group_arm.hpp"
 #include "config/reading/codecs.hpp"
 
 namespace taktwerk::config {
@@ -234,7 +235,9 @@ Table<GroupEntry> group_table() {
         reader.axis_unit = kept;
         return good;
     };
-    f.push_back(with_default(field("kinematics", &G::arm, maybe(std::move(arm)), "the arm that they are"), "none: ACS alone"));
+    f.push_back(field_via<G>(
+        "kinematics", std::move(arm), [](G& g, const ArmEntry& written) { g.arm = std::make_shared<const ArmEntry>(written); },
+        "the arm that they are", "none: ACS alone"));
     table.before = [](Reader& reader, const Node& node, G& g) {
         const auto* unit = node.find("unit");
         const auto& known = axis_units();

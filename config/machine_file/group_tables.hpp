@@ -1,36 +1,21 @@
 #pragma once
 // `groups:` of a machine file: which axes move together, and the arm that they are.
 
-#include <optional>
+#include <map>
+#include <memory>
 #include <string>
-#include <vector>
 
 #include "axes/group/group_config.hpp"
-#include "axes/kinematics/description.hpp"
 #include "config/reading/field_table.hpp"
 
 namespace taktwerk::config {
 
-/// How one member counts its joint; in the axis' own unit.
-struct JointEntry {
-    std::string axis;
-    bool reversed = false;
-    double zero = 0;
-    std::optional<std::pair<double, double>> limits;
-};
-
-/// Exactly one of them is written.
-struct ArmEntry {
-    std::optional<axes::ArmDescription> arm;
-    std::array<double, 3> base{};  ///< in the group's unit
-    std::array<double, 3> tilt{};  ///< rad: turns about X, Y, Z of the machine's, as RX RY RZ
-    std::vector<JointEntry> joints;
-};
+struct ArmEntry;  ///< group_arm.hpp, which includes Eigen: only group_tables.cpp needs it
 
 struct GroupEntry {
-    axes::AxisGroupConfig group;  ///< without kinematics
-    std::string unit = "mm";      ///< of lengths and paths
-    std::optional<ArmEntry> arm;
+    axes::AxisGroupConfig group;          ///< without kinematics
+    std::string unit = "mm";              ///< of lengths and paths
+    std::shared_ptr<const ArmEntry> arm;  ///< none: axes alone
 };
 
 [[nodiscard]] Table<GroupEntry> group_table();

@@ -93,7 +93,7 @@ template <class Block>
 template <class Block>
 consteval auto circle_pins() {
     return std::array{in<&Block::CircMode>("", "mcBORDER, mcCENTER, mcRADIUS: what AuxPoint is"),
-                      in<&Block::AuxPoint>("u", "a point of the arc; its centre; the plane's normal, as long as the radius"),
+                      in<&Block::AuxPoint>("", "as Position: a point of the arc; its centre; the plane's normal, as long as the radius"),
                       in<&Block::EndPoint>("", "as Position: C, in CoordSystem"),
                       in<&Block::PathChoice>("", "seen against the normal; mcBORDER: without effect"),
                       in<&Block::Tolerance>("u", "mcCENTER: by how much the radii of begin and end may differ")};
