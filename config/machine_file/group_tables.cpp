@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <string>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "axes/group/written_pose.hpp"
 #include "axes/kinematics/kinematics.hpp"
@@ -29,7 +28,7 @@ Codec<double> angle() {
         if (good) out = degrees * degree;
         return good;
     };
-    c.show = [](const double& rad) { return fmt::format("{} deg", rad / degree); };
+    c.show = [](const double& rad) { return show_number(rad / degree) + " deg"; };
     return c;
 }
 
@@ -194,10 +193,9 @@ Table<ArmEntry> arm_table() {
         for (const char* kind : {"cartesian", "core_xy", "beam_gantry", "scara", "palletizer", "rotary_delta", "linear_delta", "wrist"})
             kinds += node.find(kind) != nullptr ? 1 : 0;
         if (kinds == 1) return;
-        reader.problem(
-            node.at, "config.group_arm",
-            kinds == 0 ? fmt::format("`{}` names no arm", reader.path()) : fmt::format("`{}` names {} arms", reader.path(), kinds),
-            "write one of cartesian, core_xy, beam_gantry, scara, palletizer, rotary_delta, linear_delta, wrist");
+        reader.problem(node.at, "config.group_arm",
+                       "`" + reader.path() + "` names " + (kinds == 0 ? "no arm" : std::to_string(kinds) + " arms"),
+                       "write one of cartesian, core_xy, beam_gantry, scara, palletizer, rotary_delta, linear_delta, wrist");
     };
     return table;
 }
@@ -276,8 +274,7 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
     for (const auto& joint : written.joints)
         if (std::find(group.members.begin(), group.members.end(), joint.axis) == group.members.end())
             reader.problem_in(here + ".joints." + joint.axis, "config.group_joint",
-                              fmt::format("'{}' is no member of group {}", joint.axis, group.name),
-                              "name a member, or add the axis to `members`");
+                              "'" + joint.axis + "' is no member of group " + group.name, "name a member, or add the axis to `members`");
     auto made = axes::Kinematics::make(description);
     if (!made.ok()) {
         reader.problem_in(here, made.error().code, made.error().what, made.error().remedy);
@@ -291,8 +288,8 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
         const bool turns = parse_quantity("1 " + unit->second, Dimension::position, "rad").problem == QuantityProblem::none;
         if (turns != rotary[i])
             reader.problem_in("groups." + group.name + ".members", "config.group_unit",
-                              fmt::format("axis {} counts in {}, and joint {} of a {} is {}", group.members[i], unit->second, i + 1,
-                                          kind_of(description.arm), rotary[i] ? "an angle" : "a length"),
+                              "axis " + group.members[i] + " counts in " + unit->second + ", and joint " + std::to_string(i + 1) +
+                                  " of a " + std::string{kind_of(description.arm)} + " is " + (rotary[i] ? "an angle" : "a length"),
                               "put the members into the order of the joints, from the base on, or correct the axis' `unit`");
     }
     return group;
