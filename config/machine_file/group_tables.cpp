@@ -18,13 +18,10 @@ constexpr double degree = std::numbers::pi / 180;
 
 /// rad, written in any unit of angles.
 Codec<double> angle() {
-    Codec<double> c = quantity(Dimension::position);
-    const auto read = c.read;
-    c.read = [read](Reader& reader, const Node& node, double& out) {
-        const auto kept = std::exchange(reader.axis_unit, "deg");
+    Codec<double> c = quantity(Dimension::angle);
+    c.read = [read = c.read](Reader& reader, const Node& node, double& out) {
         double degrees = 0;
         const bool good = read(reader, node, degrees);
-        reader.axis_unit = kept;
         if (good) out = degrees * degree;
         return good;
     };
@@ -32,7 +29,6 @@ Codec<double> angle() {
     return c;
 }
 
-/// A length above 0 unless `any`.
 Codec<double> length() { return quantity(Dimension::position); }
 
 template <class Shape>

@@ -119,6 +119,9 @@ Scale plain_scale(std::string_view unit, Dimension dimension) {
         case Dimension::time:
             if (const auto* time = find(times, unit)) return {Scale::Fit::good, time->factor, 1e9};
             return {};
+        case Dimension::angle:
+            if (const auto* angle = find(angles, unit)) return {Scale::Fit::good, angle->factor, 1};
+            return {};
         case Dimension::frequency: return either(is("Hz"), either(is("kHz", 1e3), is("MHz", 1e6)));
         case Dimension::torque: return either(is("Nm"), is("mNm", 1, 1e3));
         case Dimension::inertia: return either(is("kgm2"), is("kgcm2", 1, 1e4));
@@ -151,6 +154,7 @@ std::string unit_of(Dimension dimension, std::string_view axis_unit) {
     switch (dimension) {
         case Dimension::time: return "ms";
         case Dimension::frequency: return "Hz";
+        case Dimension::angle: return "deg";
         case Dimension::torque: return "Nm";
         case Dimension::inertia: return "kg m2";
         case Dimension::friction: return "Nm s/rad";
@@ -166,6 +170,7 @@ std::string example_of(Dimension dimension, std::string_view axis_unit) {
     switch (dimension) {
         case Dimension::time: number = "10"; break;
         case Dimension::frequency: number = "50"; break;
+        case Dimension::angle: number = "90"; break;
         case Dimension::inertia: number = "2e-4"; break;
         case Dimension::friction: number = "1e-3"; break;
         case Dimension::ratio_ppm: number = "20"; break;

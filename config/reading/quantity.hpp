@@ -13,6 +13,7 @@ namespace taktwerk::config {
 enum class Dimension : std::uint8_t {
     time,
     frequency,
+    angle,  ///< of something that is no axis
     position,
     velocity,
     acceleration,
@@ -43,7 +44,7 @@ enum class QuantityProblem : std::uint8_t {
 
 struct Quantity {
     QuantityProblem problem = QuantityProblem::none;
-    double value = 0;  ///< seconds, Hz, u.., N m, kg m2, N m s/rad, ppm, V, cycles
+    double value = 0;  ///< seconds, Hz, degrees, u.., N m, kg m2, N m s/rad, ppm, V, cycles
 };
 
 [[nodiscard]] Quantity parse_quantity(std::string_view text, Dimension dimension, std::string_view axis_unit);

@@ -36,6 +36,7 @@ std::string quantity_pattern(const Shape& shape) {
     switch (shape.dimension) {
         case Dimension::time: unit = "(ns|us|ms|s|min)"; break;
         case Dimension::frequency: unit = "(Hz|kHz|MHz)"; break;
+        case Dimension::angle: unit = "(deg|rad|rev)"; break;
         case Dimension::position: unit = "(um|mm|cm|m|deg|rad|rev)"; break;
         case Dimension::velocity: unit = "((um|mm|cm|m|deg|rad|rev)/(s|min)|rpm)"; break;
         case Dimension::acceleration: unit = "(um|mm|cm|m|deg|rad|rev)/s\\\\^?(2|²)"; break;

@@ -18,31 +18,19 @@ void hang_at(const char* path) {
     }
 }
 
-using Open = int (*)(const char*, int, ...);
-
-int open_really(const char* name, const char* path, int flags, mode_t mode) {
-    const auto next = reinterpret_cast<Open>(::dlsym(RTLD_NEXT, name));
-    return next(path, flags, mode);
-}
-
-mode_t mode_of(int flags, va_list& more) { return (flags & O_CREAT) != 0 ? va_arg(more, mode_t) : 0; }
-
 }  // namespace
 
 extern "C" int open(const char* path, int flags, ...) {
-    va_list more;
-    va_start(more, flags);
-    const mode_t mode = mode_of(flags, more);
-    va_end(more);
     hang_at(path);
-    return open_really("open", path, flags, mode);
+    mode_t mode = 0;
+    if ((flags & O_CREAT) != 0) {
+        va_list more;
+        va_start(more, flags);
+        mode = va_arg(more, mode_t);
+        va_end(more);
+    }
+    static const auto next = reinterpret_cast<int (*)(const char*, int, ...)>(::dlsym(RTLD_NEXT, "open"));
+    return next(path, flags, mode);
 }
-
-extern "C" int open64(const char* path, int flags, ...) {
-    va_list more;
-    va_start(more, flags);
-    const mode_t mode = mode_of(flags, more);
-    va_end(more);
-    hang_at(path);
-    return open_really("open64", path, flags, mode);
-}
+/// On 64 bit the same.
+extern "C" int open64(const char*, int, ...) __attribute__((alias("open")));
