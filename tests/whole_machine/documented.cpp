@@ -28,7 +28,9 @@ constexpr std::array<Documented, trouble_names.size()> table{{
     {none, power_off, "stops: `slave_lost`, `cable_broken` or `frames_lost`", by_reset},
     {stop_machine, power_off, "stops: `link_down`", by_reset},
     {stop_machine, power_off, "stops: `foreign_command` or `slave_left_op`", by_reset},
-    {none, stop_axis, "goes on; a drive that comes up meanwhile is not enabled: `drive_setup_refused`",
+    {none, stop_axis,
+     "goes on; a drive that comes up meanwhile waits for its settings, and is not enabled after two questions without an answer: "
+     "`drive_setup_refused`",
      "reset: its settings are read again"},
     {none, warn, "goes on: `reference_clock_lost`", "by itself"},
     {none, stop_machine, "that axis stops: `drive_fault`; its program says what it makes of it", "reset, then power or start"},

@@ -13,6 +13,12 @@ namespace {
 
 constexpr double seconds_per_minute = 60.0;
 
+constexpr std::string_view ask_again = "Nothing is wrong with it as far as anybody knows: a reset reads it again";
+
+constexpr std::string_view not_read(bool silent) {
+    return silent ? "could not be read: its mailbox did not answer, twice" : "could not be read: it refuses";
+}
+
 std::string shown(ParameterAddress object) {
     return object.sub ? fmt::format("{:04X}h:{:02X}", object.index, object.sub) : fmt::format("{:04X}h", object.index);
 }
@@ -88,15 +94,14 @@ void SettingsCheck::step(ecat::Master& bus, std::size_t slave) {
         const auto answer = bus.poll(ticket_);
         if (!answer) return;
         ticket_ = 0;
-        auto& r = readings_[next_++];
-        r.known = answer->ok();
-        if (r.known) r.value = number(answer->value().data, is_signed(bus.slave(slave), r.object));
+        take(readings_[next_], *answer, bus.slave(slave));
     }
     const auto wanted = wanted_.load(std::memory_order_acquire);
     if (const auto times = came_.load(std::memory_order_acquire); times != seen_coming_) seen_coming_ = times, waiting_.clear();
     if (wanted != under_way_) {  // from the start: what was read before may be of another time
         under_way_ = wanted;
         next_ = 0;
+        again_ = false;
     } else if (wanted == static_cast<std::uint32_t>(judged_.load(std::memory_order_relaxed) >> 8)) {
         return;
     }
@@ -110,6 +115,19 @@ void SettingsCheck::step(ecat::Master& bus, std::size_t slave) {
     judge(bus.slave(slave));
     const auto verdict = problems_.empty() ? Verdict::fits : Verdict::refused;
     judged_.store(static_cast<std::uint64_t>(under_way_) << 8 | static_cast<std::uint8_t>(verdict), std::memory_order_release);
+}
+
+/// A question that a mailbox has swallowed is asked once more: it was stuck, or the drive came up just then. Swallowed twice: nothing else is asked.
+void SettingsCheck::take(Reading& reading, const Result<ecat::SdoResult>& answer, const ecat::SlaveConfig& slave) {
+    reading.known = answer.ok();
+    reading.silent = !answer.ok() && answer.error().code != "sdo.abort";
+    if (reading.known) reading.value = number(answer.value().data, is_signed(slave, reading.object));
+    const bool twice = reading.silent && again_;
+    again_ = reading.silent && !twice;
+    if (again_) return;
+    ++next_;
+    if (!twice) return;
+    for (; next_ < readings_.size(); ++next_) readings_[next_].known = false, readings_[next_].silent = true;
 }
 
 bool SettingsCheck::is_signed(const ecat::SlaveConfig& slave, ParameterAddress object) const noexcept {
@@ -129,7 +147,7 @@ void SettingsCheck::judge(const ecat::SlaveConfig& slave) {
         const auto& r = *reading(row.object);
         const auto place = static_cast<std::size_t>(r.value);
         if (!r.known) {
-            say(row.object, row.text, "could not be read", row.remedy, row.section);
+            say(row.object, row.text, not_read(r.silent), r.silent ? ask_again : row.remedy, row.section);
         } else if (row.cycles.empty()) {
             if (std::find(row.values.begin(), row.values.end(), r.value) == row.values.end())
                 say(row.object, row.text, fmt::format("reads {}", r.value), row.remedy, row.section);
@@ -161,8 +179,9 @@ void SettingsCheck::judge_stored(const ecat::SlaveConfig& slave) {
     for (const auto& setting : wants_.stored) {
         const auto& r = *reading(setting.object);
         if (r.known && r.value == setting.value) continue;
+        const auto found = r.known ? fmt::format("reads {}", r.value) : std::string{not_read(r.silent)};
         problems_.push_back(fmt::format("slave '{}': {} shall be {} by `stored`, and {}. {}", slave.name, named(setting.object),
-                                        setting.value, r.known ? fmt::format("reads {}", r.value) : "could not be read", setting.remedy));
+                                        setting.value, found, r.silent ? ask_again : setting.remedy));
     }
 }
 

@@ -58,7 +58,9 @@ private:
         ParameterAddress object;
         std::int64_t value = 0;
         bool known = false;
+        bool silent = false;  ///< nobody answered, which says nothing about the object
     };
+    void take(Reading& reading, const Result<ecat::SdoResult>& answer, const ecat::SlaveConfig& slave);
     void want(ParameterAddress object);
     [[nodiscard]] const Reading* reading(ParameterAddress object) const noexcept;
     void judge(const ecat::SlaveConfig& slave);
@@ -86,6 +88,7 @@ private:
 
     std::uint32_t under_way_ = 0;  // the count that is being read; 0: none
     std::size_t next_ = 0;
+    bool again_ = false;  // the next one is asked for the second time
     ecat::SdoTicket ticket_ = 0;
     std::vector<std::string> problems_;
 };

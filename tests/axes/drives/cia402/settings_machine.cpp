@@ -9,6 +9,7 @@ namespace taktwerk::axes::cia402::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -114,7 +115,47 @@ TEST_F(DriveSettings, WhatCannotBeReadIsNotTakenForRight) {
     build();
     rig.run(200);
     EXPECT_FALSE(rig.told_to_enable());
-    EXPECT_THAT(rig.drive->setup_problems(), ElementsAre(HasSubstr("2006h:01 could not be read")));
+    EXPECT_THAT(rig.drive->setup_problems(), ElementsAre(HasSubstr("2006h:01 could not be read: it refuses")));
+}
+
+struct StuckMailbox : DriveSettings {
+    /// Stuck while its ten objects are read.
+    void get_stuck() {
+        for (int i = 0; i < 10; ++i) {
+            rig.others.push_back({0x2020, static_cast<std::uint8_t>(i + 1)});
+            rig.profile.required_settings.push_back(row({0x2020, static_cast<std::uint8_t>(i + 1)}, {0}));
+        }
+        build();
+        rig.run(3);
+        rig.network.slave(0).stick_mailbox(true);
+        rig.run(200);
+        ASSERT_FALSE(rig.told_to_enable()) << "all was read before it got stuck: this shows nothing";
+    }
+};
+
+// A question that a stuck mailbox has swallowed never gets an answer, however well the drive is by then.
+TEST_F(StuckMailbox, WhatItSwallowedIsAskedOnceMore) {
+    get_stuck();
+    rig.network.slave(0).stick_mailbox(false);
+    bool refused = false;
+    rig.on_cycle = [&] { refused = refused || rig.feedback().setup_refused; };
+    rig.run(20'000);
+    EXPECT_TRUE(rig.told_to_enable());
+    EXPECT_FALSE(refused);
+}
+
+TEST_F(StuckMailbox, ForGoodItSaysNothingAboutTheObjects) {
+    get_stuck();
+    rig.run(20'000);
+    EXPECT_FALSE(rig.told_to_enable());
+    EXPECT_TRUE(rig.feedback().setup_refused);
+    EXPECT_THAT(rig.drive->setup_problems(),
+                Contains(AllOf(HasSubstr("2020h:0A could not be read: its mailbox did not answer"), HasSubstr("a reset reads it again"))));
+    rig.network.slave(0).stick_mailbox(false);
+    rig.command.reset_fault = true;
+    rig.run(20'000);
+    EXPECT_TRUE(rig.told_to_enable());
+    EXPECT_FALSE(rig.feedback().setup_refused);
 }
 
 // Set at the drive's own panel: nothing on the bus tells of it. Who resets the axis says that it was mended.
