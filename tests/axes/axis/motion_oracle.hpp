@@ -312,7 +312,9 @@ private:
         // So is less, where the actual position has changed by just that: a reference found again, a count beside the one before.
         const bool alike_to_the_digit =
             untouched && std::abs(way) > grain && std::abs(modulo_of(next.actual - last_.actual - way, next.modulo)) <= 4 * grain;
-        const bool rested = untouched && (std::abs(way) > told_grain + grain || alike_to_the_digit);
+        // And beside a motor that comes to rest in the very cycle in which its reference is found, by a count as well.
+        const bool referenced = untouched && std::abs(way) > grain && next.homed && !last_.homed;
+        const bool rested = untouched && (std::abs(way) > told_grain + grain || alike_to_the_digit || referenced);
         const bool follows = std::abs(way - expected) <= left * rounding + grain && !rested;
         bool renumbered = false;
         double shown = next.actual - last_.actual;  // what the motor did, as far as anybody saw
@@ -323,10 +325,11 @@ private:
             shown = modulo_of(shown - shift, next.modulo);
             const double moved = shown - std::clamp(shown, std::min(late, 0.0), std::max(late, 0.0));
             // A way that a motor makes anyway proves nothing of a shift that is shorter: at rest it has to be nearly the whole of what the motor did.
-            const bool alike = rested && std::abs(shift) <= 2 * system.velocity * T
-                                   ? std::abs(moved) <= std::abs(modulo_of(next.actual - last_.actual, next.modulo))
-                                   : std::abs(moved) <= 2 * system.velocity * T + told_grain;
-            renumbered = (std::abs(shift) > told_grain || alike_to_the_digit) && alike &&
+            const bool alike =
+                rested && std::abs(shift) <= 2 * system.velocity * T
+                    ? std::abs(moved) <= std::max(std::abs(modulo_of(next.actual - last_.actual, next.modulo)), referenced ? told_grain : 0)
+                    : std::abs(moved) <= 2 * system.velocity * T + told_grain;
+            renumbered = (std::abs(shift) > told_grain || alike_to_the_digit || referenced) && alike &&
                          (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain);
             // Not again and again: that is a view that stands still while the drive is led on.
             again_ = renumbered ? again_ + 1 : 0;

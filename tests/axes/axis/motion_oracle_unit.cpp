@@ -167,6 +167,29 @@ TEST(MotionOracle, KnowsCoordinatesThatAreNearlyTheSameFromADriveThatIsLeft) {
     EXPECT_NE(told_at_rest(0.00015, 0.00005), "") << "the motor may have made that by itself";
 }
 
+// A stepper comes to rest in the very cycle in which its reference is found, a count beside the one before: the actual position changes by both.
+TEST(MotionOracle, KnowsAReferenceBesideAMotorThatComesToRest) {
+    const auto told_at_rest = [](double set, double actual, bool finds_it) {
+        const auto config = plain_axis();
+        const double count = 1 / config.gearing.counts_per_unit();
+        MotionOracle oracle(config, cycle);
+        for (int k = 0; k < 40; ++k) {
+            auto story = at(0);
+            story.view.set_velocity = story.view.set_acceleration = 0;
+            story.view.homed = !finds_it || k >= 20;
+            story.view.set_position = k < 20 ? 0 : set * count;
+            story.view.actual_position = k < 20 ? 0 : actual * count;
+            story.command.position = 0;
+            story.command.velocity = 0;
+            oracle.observe(story.view, story.command, config.limits);
+        }
+        return oracle.report();
+    };
+    for (const double motor : {-1, 0, 1}) EXPECT_EQ(told_at_rest(1, 1 + motor, true), "") << motor;
+    EXPECT_NE(told_at_rest(1, 2, false), "") << "no reference was found";
+    EXPECT_NE(told_at_rest(3, 0, true), "") << "the actual position says nothing of it";
+}
+
 // Feedback that was lost comes back with the new number: the actual position has 30 cycles to make up, 0.39 u, and no more.
 TEST(MotionOracle, KnowsCoordinatesFromMotionWhereFeedbackComesBack) {
     const auto returns = [](double more) {
