@@ -311,7 +311,7 @@ private:
         const bool untouched = rests && a.velocity == 0 && a.acceleration == 0 && told_ && told == 0;
         // So is less, where the actual position has changed by just that: a reference found again, a count beside the one before.
         const bool alike_to_the_digit =
-            untouched && std::abs(way) > grain && std::abs(modulo_of(next.actual - last_.actual - way, next.modulo)) <= 4 * grain;
+            untouched && std::abs(way) > 8 * grain && std::abs(modulo_of(next.actual - last_.actual - way, next.modulo)) <= 4 * grain;
         // And beside a motor that comes to rest in the very cycle in which its reference is found, by a count as well.
         const bool referenced = untouched && std::abs(way) > grain && next.homed && !last_.homed;
         const bool rested = untouched && (std::abs(way) > told_grain + grain || alike_to_the_digit || referenced);

@@ -190,6 +190,26 @@ TEST(MotionOracle, KnowsAReferenceBesideAMotorThatComesToRest) {
     EXPECT_NE(told_at_rest(3, 0, true), "") << "the actual position says nothing of it";
 }
 
+// A stop has left 3.5e-10 u of a move, which the next move goes in one cycle: of that no actual value says anything.
+TEST(MotionOracle, LetsAnAxisGoWhatIsNearlyNothing) {
+    const auto told_at_rest = [](double way) {
+        const auto config = plain_axis();
+        MotionOracle oracle(config, cycle);
+        for (int k = 0; k < 40; ++k) {
+            auto story = at(0);
+            story.view.set_velocity = story.view.set_acceleration = 0;
+            story.view.set_position = 90 - (k < 20 ? way : 0);
+            story.view.actual_position = 90;
+            story.command.position = 90'000;
+            story.command.velocity = 0;
+            oracle.observe(story.view, story.command, config.limits);
+        }
+        return oracle.report();
+    };
+    EXPECT_EQ(told_at_rest(3.4586378205858637e-10), "");
+    EXPECT_NE(told_at_rest(1e-6), "") << "the jerk limit allows a third of that";
+}
+
 // Feedback that was lost comes back with the new number: the actual position has 30 cycles to make up, 0.39 u, and no more.
 TEST(MotionOracle, KnowsCoordinatesFromMotionWhereFeedbackComesBack) {
     const auto returns = [](double more) {
