@@ -32,6 +32,8 @@ public:
     void shaken() {
         for (auto& one : axes_) one.sure = false;
     }
+    /// Its mechanics are where it shows: what counts its steps has lost none since its homing.
+    [[nodiscard]] bool sure(std::size_t axis) const { return axis >= axes_.size() || axes_[axis].sure; }
     /// Somebody has asked for a new reference: set where it stands, that takes a cycle and shows no Homing.
     void asked_for_reference(std::size_t axis) {
         if (axis >= axes_.size()) return;

@@ -220,8 +220,15 @@ bool Rig::stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact) {
            (view.negative_limit_switch || view.positive_limit_switch);
 }
 
+/// It runs where it takes a free way to be: a motor without an encoder that was held, or starved, while it turned.
+bool Rig::has_lost_steps(std::string_view alarm, const AlarmFact& fact) const {
+    if ((alarm != "negative_limit_switch" && alarm != "positive_limit_switch") || fact.source != AlarmSource::axis) return false;
+    const auto& binding = m.machine->config().axes[fact.index];
+    return binding.profile && !binding.profile->encoder.present && !binding.encoder && !places_.sure(fact.index);
+}
+
 bool Rig::explained(std::string_view alarm, const AlarmFact& fact) {
-    if (stopped_at_its_switch(alarm, fact)) return true;
+    if (stopped_at_its_switch(alarm, fact) || has_lost_steps(alarm, fact)) return true;
     for (const auto& one : happenings_) {
         if (one.to && now() - *one.to > aftermath) continue;
         for (const auto& consequence : std::visit([](auto what) { return consequences(what); }, one.what))

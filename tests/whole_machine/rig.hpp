@@ -106,6 +106,7 @@ private:
     void look_at_answers();
     [[nodiscard]] bool explained(std::string_view alarm, const AlarmFact& fact);
     [[nodiscard]] bool stopped_at_its_switch(std::string_view alarm, const AlarmFact& fact);
+    [[nodiscard]] bool has_lost_steps(std::string_view alarm, const AlarmFact& fact) const;
     [[nodiscard]] bool is_at(const AlarmFact& fact, const std::string& at) const;
     void tell(std::string line);
 
