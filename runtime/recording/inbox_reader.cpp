@@ -120,6 +120,7 @@ std::optional<SampleRecord> read_sample(std::span<const std::byte> bytes) {
     s.latch = in.take<std::uint16_t>();
     s.latch_at = in.take<std::int64_t>();
     s.acknowledged = in.take<std::uint32_t>();
+    s.power_of = in.take<std::uint16_t>();
     return in.ended(record);
 }
 

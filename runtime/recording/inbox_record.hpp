@@ -12,7 +12,7 @@
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
 //            then, of a measure alone: u8 kind, u16 count, f64 distance, velocity, acceleration, from, to, period   51 bytes
-//   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
+//   sample   u16 drive on a serial line, what it said (see record_sample)                      74 bytes
 //   request  u16 Modbus device, u16 request, u8 fault, u8 exception, u8 ever succeeded, i64 sent ns   15 bytes
 //   channel  u16 Modbus device, u16 channel, i64 word: of the request before                   12 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
@@ -116,9 +116,9 @@ inline void record_object(Recorder& recorder, Instant at, std::uint16_t program,
 
 /// u16 drive, u32 number, u16 flags (online, saving, running, torque, refused, home, negative and positive limit, released, latch armed, latched, no index), i64 heard ns,
 /// i64 sampled ns, i64 position, f64 velocity, f64 torque, u16 alarm, u16 inputs, u16 outputs, u16 epoch, u16 session, u16 latch,
-/// i64 latched at, u32 acknowledged.
+/// i64 latched at, u32 acknowledged, u16 power of.
 inline void record_sample(Recorder& recorder, Instant at, std::uint16_t drive, const axes::xp200::Sample& s) noexcept {
-    inbox_record::Bytes<72> bytes;
+    inbox_record::Bytes<74> bytes;
     const unsigned flags = (s.online ? 1u : 0u) | (s.saving ? 2u : 0u) | (s.running ? 4u : 0u) | (s.torque_mode ? 8u : 0u) |
                            (s.setup_refused ? 16u : 0u) | (s.home ? 32u : 0u) | (s.negative_limit ? 64u : 0u) |
                            (s.positive_limit ? 128u : 0u) | (s.released ? 256u : 0u) | (s.latch_armed ? 512u : 0u) |
@@ -139,6 +139,7 @@ inline void record_sample(Recorder& recorder, Instant at, std::uint16_t drive, c
     bytes.put(s.latch);
     bytes.put(s.latch_at);
     bytes.put(s.acknowledged);
+    bytes.put(s.power_of);
     recorder.append(sample_channel, at, bytes.all());
 }
 

@@ -4,7 +4,7 @@
 //
 //   setpoints  for each axis: f64 position, velocity, acceleration (its unit), u8 AxisState                25 bytes each
 //   points     for each output point its raw word as it goes out, i64                                       8 bytes each
-//   wish       u16 drive on a serial line, what it is asked for (see record_wish)                          26 bytes
+//   wish       u16 drive on a serial line, what it is asked for (see record_wish)                          24 bytes
 //   outputs    the outputs of the bus' process image
 //   call       u8 Call, i64 now ns, u16 index: what was done beside the cycle, where one thread does it all  11 bytes
 
@@ -21,10 +21,11 @@ namespace taktwerk::runtime {
 inline constexpr RecordChannel setpoints_channel = 15, points_channel = 16, wish_channel = 17, outputs_channel = 18, call_channel = 19;
 inline constexpr RecordChannel wire_channel = 21;
 
-/// RecordingInfo::channels of a recording of a machine: the name of each channel at its number.
+/// RecordingInfo::channels of a recording of a machine: the name of each channel at its number. Records of a channel that are arranged otherwise
+/// than before need another name here: what was recorded before is refused then (`replay.channels`), and never read wrongly.
 [[nodiscard]] inline std::vector<std::string> inbox_channels() {
-    return {"",        "tick",       "frame",      "command", "object", "departure", "sample",     "modbus_request", "modbus_word",
-            "level",   "half_frame", "refused",    "link",    "ring",   "disk",      "setpoints",  "points",         "wish",
+    return {"",        "tick",       "frame",      "command", "object", "departure", "said",       "modbus_request", "modbus_word",
+            "level",   "half_frame", "refused",    "link",    "ring",   "disk",      "setpoints",  "points",         "asked_for",
             "outputs", "call",       "start_file", "wire",    "hook",   "slow",      "task_times", "faults",         "asked"};
 }
 
@@ -49,9 +50,10 @@ inline void record_call(Recorder& recorder, Call call, Instant now, std::uint16_
     recorder.append(call_channel, now, bytes.all());
 }
 
-/// u16 drive, u32 sequence, u8 power, u8 flags (reset, halt, torque), i16 speed, torque, speed limit, i16 up, down ms, u16 session, u16 latch.
+/// u16 drive, u32 sequence, u8 power, u8 flags (reset, halt, torque), i16 speed, torque, speed limit, i16 up, down ms, u16 session, u16 latch,
+/// u16 power turn.
 inline void record_wish(Recorder& recorder, Instant at, std::uint16_t drive, const axes::xp200::Wish& wish) noexcept {
-    inbox_record::Bytes<22> bytes;
+    inbox_record::Bytes<24> bytes;
     bytes.put(drive);
     bytes.put(wish.sequence);
     bytes.put(static_cast<std::uint8_t>(wish.power));
@@ -59,6 +61,7 @@ inline void record_wish(Recorder& recorder, Instant at, std::uint16_t drive, con
     for (const std::int16_t number : {wish.speed, wish.torque, wish.speed_limit, wish.up_ms, wish.down_ms}) bytes.put(number);
     bytes.put(wish.session);
     bytes.put(wish.latch);
+    bytes.put(wish.power_turn);
     recorder.append(wish_channel, at, bytes.all());
 }
 

@@ -16,7 +16,7 @@ const std::vector<Leave> large_classes{
     {"axes/port/drive_feedback.hpp", "DriveFeedback", 32, "record: what a drive says in one cycle"},
     {"axes/port/drive_capabilities.hpp", "DriveCapabilities", 30, "record: what a drive can"},
     {"axes/sim/axis_objects.hpp", "AxisInputs", 31, "record: the objects that a master writes"},
-    {"axes/drives/xp200/drive_mailbox.hpp", "Sample", 27, "record: what a drive was last seen to do"},
+    {"axes/drives/xp200/drive_mailbox.hpp", "Sample", 28, "record: what a drive was last seen to do"},
     {"runtime/snapshot.hpp", "Snapshot", 30, "record: one cycle of the machine, in one copy"},
     {"ecat/cycle/cycle_link.hpp", "CycleLink", 29, "record: plain numbers that cross between two threads, each an atomic of its own"},
     {"axes/axis/axis_core.hpp", "AxisCore", 29,

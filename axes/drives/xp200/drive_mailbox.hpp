@@ -21,13 +21,14 @@ struct Wish {
     /// The newest session of the line in which the cycle has seen the drive without power: only in that one it may be enabled. An axis that
     /// still wants power from before a silence does not switch the motor on by that.
     std::uint16_t session = 0;
-    std::uint16_t latch = 0;  ///< grows each time the index pulse is waited for anew; its lowest bit: it is waited for
+    std::uint16_t latch = 0;       ///< grows each time the index pulse is waited for anew; its lowest bit: it is waited for
+    std::uint16_t power_turn = 0;  ///< grows each time power is wanted or not wanted any more; odd: it is wanted
     std::uint32_t sequence = 0;
 
     [[nodiscard]] bool asks_the_same(const Wish& other) const noexcept {
         return power == other.power && reset == other.reset && halt == other.halt && torque_mode == other.torque_mode &&
                speed == other.speed && torque == other.torque && speed_limit == other.speed_limit && up_ms == other.up_ms &&
-               down_ms == other.down_ms && session == other.session && latch == other.latch;
+               down_ms == other.down_ms && session == other.session && latch == other.latch && power_turn == other.power_turn;
     }
 };
 
@@ -43,7 +44,8 @@ struct Sample {
     double velocity = 0;  ///< counts/s
     double torque = 0;    ///< fraction of rated
     std::uint16_t alarm = 0;
-    bool running = false;  ///< RUN: energised
+    bool running = false;        ///< RUN: energised, by whatever order
+    std::uint16_t power_of = 0;  ///< the Wish::power_turn that it has its power by; 0: none of them
     bool torque_mode = false;
     bool setup_refused = false;
     bool home = false, negative_limit = false, positive_limit = false;

@@ -65,9 +65,7 @@ std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
     if (!request && (sample_.released || !problems().empty())) obeyed_ = wish.sequence;
     if (request && (urgent(wish) || ++commands_in_a_row_ <= 2)) return request;
     commands_in_a_row_ = 0;
-    if (!services_.empty() && ++turn_ % 4 == 0) {
-        return ask(Asked::service, services_.begin());
-    }
+    if (services_.its_turn()) return ask(Asked::service, services_.begin());
     return poll(now);
 }
 
@@ -97,7 +95,6 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
             turn_ = 0;
             raw_.reset();
             index_.forget();
-            orders_.forget();
             selects_.reset();
             settings_read_ = now;
             ++sample_.epoch;
@@ -115,15 +112,17 @@ bool Schedule::may_enable(const Wish& wish) const noexcept {
 }
 
 std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) {
-    const bool on = may_enable(wish);
+    const bool wanted = may_enable(wish);
+    orders_.want(wanted, wish.power_turn);
+    sample_.power_of = sample_.running ? orders_.power_of() : std::uint16_t{0};
+    const bool on = wanted && !orders_.unclear();
     if (must_brake(wish) || (drives_torque() && sample_.running && !on)) return write(pr::force_4, force::mode + force::emergency);
-    const bool moves = on && sample_.running && !wish.halt && (wish.torque_mode ? wish.torque != 0 : wish.speed != 0);
+    const bool moves = on && orders_.on() && !wish.halt && (wish.torque_mode ? wish.torque != 0 : wish.speed != 0);
     if (!moves) {
         selects_.reset();
         if (moves_by_itself()) return write(pr::force_3, 0);
     }
-    if (!on && (sample_.running || orders_.enabled()) && orders_.disable(now))
-        return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_off));
+    if (!on && orders_.disable(now)) return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_off));
     if (!wish.reset) read_again_ = true;
     if (wish.reset && sample_.alarm != 0 && now - clear_tried_ >= clear_again) {
         clear_tried_ = now;
@@ -137,9 +136,9 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
     const std::uint16_t mode = !wish.torque_mode ? 0 : wish.halt ? force::mode + force::emergency : force::mode;
     if (!on) return sample_.running || settings_.knows(pr::force_4, 0) ? std::nullopt : change_mode(0);
     if (!settings_.knows(pr::force_4, mode)) return change_mode(mode);
-    if (!sample_.running) {
+    if (!orders_.on()) {
         // At standstill only (5.5 SON), and not before it had its time.
-        if (!stands() || !orders_.enable(now)) return std::nullopt;
+        if (!stands() || !orders_.enable(wish.power_turn, now)) return std::nullopt;
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_on));
     }
     if (selects_) return write(pr::force_3, *selects_);
@@ -197,7 +196,7 @@ modbus::Request Schedule::poll(Instant now) {
 bool Schedule::saved_would_be_harmless() const noexcept {
     for (std::uint16_t i = 0; i < 5; ++i)
         if (!settings_.knows(static_cast<std::uint16_t>(pr::force_1 + i), 0)) return false;
-    return phase_ == Phase::running && !sample_.running && settings_.known(pr::forced_enable) == 0;
+    return phase_ == Phase::running && !sample_.running && orders_.off() && settings_.known(pr::forced_enable) == 0;
 }
 
 }  // namespace taktwerk::axes::xp200

@@ -6,7 +6,8 @@
 //   closed --echo--> opening: stop, disable, read settings, write settings --> running --silence--> closed
 //
 // Whatever ran before a silence is over before anything else counts: the drive is disabled, and until RUN has been seen off nothing is
-// acknowledged and nothing enabled. A drive that keeps its power all the same is not enabled either; the problems say so.
+// acknowledged and nothing enabled. A drive that keeps its power all the same is not enabled either; the problems say so. Whose power RUN shows
+// in operation: power_orders.hpp.
 //
 // Torque control is CMODE with Pr004 = 5, chosen at standstill. Out of it: EMG first (Pr123, with Pr164 = 1 the drive brakes by Pr063 and keeps
 // its power), then no torque selected, and at standstill back to speed control, whose speed 1 is rest, and out of EMG in one word.
@@ -21,8 +22,8 @@
 
 #include "axes/drives/xp200/drive_config.hpp"
 #include "axes/drives/xp200/drive_mailbox.hpp"
-#include "axes/drives/xp200/enable_orders.hpp"
 #include "axes/drives/xp200/index_pulse.hpp"
+#include "axes/drives/xp200/power_orders.hpp"
 #include "axes/drives/xp200/registers.hpp"
 #include "axes/drives/xp200/service_queue.hpp"
 #include "axes/drives/xp200/settings.hpp"
@@ -69,6 +70,7 @@ private:
     void follow_latch(const Wish& wish, Instant now) noexcept;
     void take_terminals(std::uint16_t inputs, std::uint16_t outputs, Instant now);
     void take_running(bool running);
+    void show_running(bool running);
     void lost(Instant now);
     [[nodiscard]] modbus::Request ask(Asked what, const modbus::Request& request) noexcept;
     [[nodiscard]] modbus::Request write(std::uint16_t number, std::int64_t value) noexcept;
@@ -92,7 +94,7 @@ private:
     bool rests_ = false;                       // the last two positions are the same
     std::optional<std::int64_t> single_turn_;  // read after the last position
     Instant disabled_at_{}, latch_since_{}, last_try_{}, clear_tried_{}, alarm_read_{}, terminals_read_{}, settings_read_{};
-    EnableOrders orders_;
+    PowerOrders orders_;
     bool look_for_alarm_ = false, read_again_ = false;
     int commands_in_a_row_ = 0, turn_ = 0;
     std::optional<std::uint16_t> selects_;  // Pr122 to be written after the value it selects

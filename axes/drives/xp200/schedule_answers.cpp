@@ -28,6 +28,7 @@ void Schedule::take(const modbus::Answer& answer, Instant now) {
     sample_.heard = now;
     sample_.saving = asked == Asked::service && answer.request.function == modbus::Function::save && answer.outcome == Outcome::answered;
     if (answer.outcome == Outcome::exception) {
+        if (asked == Asked::servo) orders_.answered(PowerOrders::Heard::refused);
         // A parameter that the drive does not take: said once, never asked for again in this session.
         if (phase_ == Phase::setting || phase_ == Phase::reading) settings_.done();
         return;
@@ -51,16 +52,20 @@ void Schedule::take(const modbus::Answer& answer, Instant now) {
         case Asked::servo:
             if (phase_ == Phase::disabling) {
                 disabled_at_ = now;
+                orders_.opened(now);
                 phase_ = Phase::reading;
                 settings_.restart();
-            }
+            } else orders_.answered(PowerOrders::Heard::done);
             break;
         case Asked::position: take_position(answer, now); break;
         case Asked::turn: single_turn_ = answer.response.words[0] | (static_cast<std::int64_t>(answer.response.words[1]) << 16); break;
         case Asked::terminals: take_terminals(answer.response.words[0], answer.response.words[1], now); break;
         case Asked::alarm:
             // 255 and 65535: "none" in some tables; the register's coding is not stated (9.5).
-            if (std::exchange(look_for_alarm_, false)) sample_.running = false;
+            if (std::exchange(look_for_alarm_, false)) {
+                if (orders_.on()) orders_.seen(false);  // taken back meanwhile, its RUN is still to be looked at
+                show_running(false);
+            }
             sample_.alarm = answer.response.words[0] == 0xFF || answer.response.words[0] == 0xFFFF ? 0 : answer.response.words[0];
             break;
         case Asked::clear:
@@ -178,14 +183,23 @@ void Schedule::watch_release(Instant now) {
 
 /// Current gone although nobody asked: mostly an alarm. That is read first, so that the axis hears the cause and not the effect.
 void Schedule::take_running(bool running) {
-    look_for_alarm_ = !running && sample_.running && orders_.enabled();
-    if (!look_for_alarm_) sample_.running = running;
+    look_for_alarm_ = !running && orders_.on();
+    if (look_for_alarm_) return;
+    orders_.seen(running);
+    show_running(running);
+}
+
+void Schedule::show_running(bool running) {
+    sample_.running = running;
+    sample_.power_of = running ? orders_.power_of() : std::uint16_t{0};
 }
 
 void Schedule::lost(Instant now) {
     phase_ = Phase::closed;
     last_try_ = now;
     sample_.online = sample_.running = look_for_alarm_ = false;
+    orders_.forget();
+    sample_.power_of = 0;
     settings_.forget();
     settings_.restart();
 }

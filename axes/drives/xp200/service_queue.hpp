@@ -19,6 +19,7 @@ struct Service {
 class ServiceQueue {
 public:
     static constexpr std::size_t room = 64;
+    static constexpr unsigned pace = 4;
 
     /// Full: false.
     bool push(const Service& service) {
@@ -26,8 +27,9 @@ public:
         waiting_.push_back(service);
         return true;
     }
-    [[nodiscard]] bool empty() const noexcept { return waiting_.empty(); }
-    /// The next one is under way. Only while there is one.
+    /// Asked before each question to the drive: one of `pace` is for the first that waits, the others are the poll's.
+    [[nodiscard]] bool its_turn() noexcept { return !waiting_.empty() && ++asked_ % pace == 0; }
+    /// The next one is under way. Only when it is its turn.
     [[nodiscard]] modbus::Request begin() {
         const auto service = waiting_.front();
         waiting_.pop_front();
@@ -45,6 +47,7 @@ private:
     std::deque<Service> waiting_;
     std::optional<std::pair<ServiceTicket, modbus::Answer>> served_;
     ServiceTicket under_way_ = 0;
+    unsigned asked_ = 0;
 };
 
 }  // namespace taktwerk::axes::xp200

@@ -73,7 +73,9 @@ const DriveFeedback& Xp200Drive::decode(Instant now) noexcept {
     // A service thread that hangs is as silent as the line.
     f.online = sample.online && (sample.saving || now - sample.heard < 2 * config_.silence);
     f.fault = sample.alarm != 0;
-    f.power = f.fault ? PowerState::fault : sample.running ? PowerState::enabled : PowerState::disabled;
+    // Power that an order gave which has been taken back since is not the one that is wanted now: it will go.
+    const bool enabled = wish_.power == PowerRequest::on ? sample.power_of == wish_.power_turn : sample.running;
+    f.power = f.fault ? PowerState::fault : enabled ? PowerState::enabled : PowerState::disabled;
     f.mode = sample.torque_mode ? DriveMode::profile_torque : DriveMode::profile_velocity;
     f.error_code = sample.alarm;
     f.status_word = sample.outputs;
@@ -128,6 +130,8 @@ void Xp200Drive::encode(const DriveCommand& command, Instant) noexcept {
     const bool waits = probe.armed && probe.index_pulse;
     next.latch = wish_.latch;
     if (waits != ((wish_.latch & 1u) != 0)) ++next.latch;
+    next.power_turn = wish_.power_turn;
+    if ((next.power == PowerRequest::on) != (wish_.power == PowerRequest::on)) ++next.power_turn;
     next.sequence = wish_.sequence;
     if (next.asks_the_same(wish_)) return;
     ++next.sequence;

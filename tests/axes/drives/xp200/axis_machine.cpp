@@ -468,6 +468,22 @@ TEST(Xp200Axis, ParametersAreReadAndWrittenBesideThePoll) {
     EXPECT_EQ(rig.port.start_service(DriveService::save_parameters), 0u) << "enabled";
 }
 
+// Parameters asked for one behind the other take their turns with the questions of the poll, and none of either waits for ever.
+TEST(Xp200Axis, ManyParametersLeaveTheOthersTheirTurn) {
+    for (auto phase = 0ms; phase < 70ms; phase += 11ms) {
+        AxisRig rig;
+        rig.go();
+        rig.run(phase);
+        std::vector<ServiceTicket> tickets;
+        for (std::uint16_t i = 0; i < 12; ++i) tickets.push_back(rig.port.read_parameter({60, 0}));
+        rig.run(20ms);
+        rig.drive.servo().raise(12);
+        EXPECT_TRUE(rig.until([&] { return rig.axis.view().drive_error == 12; }, 150ms)) << phase.count();
+        rig.run(2s);
+        for (const auto ticket : tickets) EXPECT_TRUE(rig.port.service_answer(ticket).has_value()) << phase.count();
+    }
+}
+
 // 9.6.6: the drive is silent for 5 s; that is no loss of the line, and the axis is still there afterwards.
 TEST(Xp200Axis, SavingIsNoSilence) {
     AxisRig rig;
