@@ -213,5 +213,37 @@ TEST(WatchedPlaces, AMotorWithoutAnEncoderIsComparedUntilItMayHaveLostSteps) {
     }
 }
 
+// And so it ends up at its limit switch, long after: that is explained by what has cost it steps, and by nothing else.
+TEST(WatchedPlaces, ALimitSwitchIsExplainedByLostStepsOnly) {
+    for (const bool told : {true, false}) {
+        Rig rig{"demo"};
+        rig.m.machine->start_bus();
+        ASSERT_TRUE(rig.until([&] { return rig.m.machine->bus().phase() == ecat::Master::Phase::operational; }, 60s));
+        ASSERT_TRUE(rig.m.machine->arm());
+        rig.mode(runtime::Mode::manual);
+        rig.run(20ms);
+        (void)rig.submit(OperatorAction::power, z, true);
+        ASSERT_TRUE(rig.until([&] { return rig.m.axis(z).powered; }, 3s));
+        (void)rig.submit(OperatorAction::home, z);
+        ASSERT_TRUE(rig.until([&] { return rig.m.axis(z).homed && rig.m.axis(z).state == axes::AxisState::Standstill; }, 30s));
+
+        const auto jammed = told ? std::optional{rig.begins(Trouble::jammed, "z")} : std::nullopt;
+        rig.m.world.drive("z")->jam(true);
+        (void)rig.submit(OperatorAction::move_absolute, z, false, 60, 50);
+        rig.run(3s);
+        rig.m.world.drive("z")->jam(false);
+        if (jammed) rig.ended(*jammed);
+        ASSERT_EQ(rig.m.axis(z).set_position, 60) << "it does not know";
+
+        (void)rig.submit(OperatorAction::move_absolute, z, false, 5, 2);
+        ASSERT_TRUE(rig.until([&] { return rig.seen.contains("negative_limit_switch"); }, 40s)) << rig.standing();
+        ASSERT_LT(rig.m.axis(z).set_position, 60 - 2 * to_seconds(Rig::aftermath)) << "the command still explains it";
+        rig.gather();
+        const bool said = std::any_of(rig.problems.begin(), rig.problems.end(),
+                                      [](const auto& one) { return one.find("nobody knows why: negative_limit") != std::string::npos; });
+        EXPECT_EQ(said, !told) << rig.story();
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::whole
