@@ -15,6 +15,8 @@ constexpr int stations_between = 8;  // of a span that bends
 // A cell is at most this part of a run; of one where it bends; of one of many spans.
 constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
 constexpr double rest_share = 0.2;  // of the way with jerk that the piece at rest takes
+// That piece cannot be cut, and who wants to stand waits for its end: it lasts no longer than this at a beginning.
+constexpr double longest_start = 0.012;  // s
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
 constexpr double fewer = 2.7;
@@ -105,8 +107,11 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     const bool from_rest = task.velocity <= 0;
     start = {};
     end = {};
-    if (from_rest) start.rest_length = rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]);
-    else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
+    if (from_rest) {
+        const double jerk = along_limits(curve.at(task.from, CurveSide::after), limits, 1).jerk;
+        start.rest_length = std::min(rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]),
+                                     jerk * longest_start * longest_start * longest_start / 6);
+    } else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
     add_stations(whole / (coarse ? most_of_coarse_run : most_of_run));

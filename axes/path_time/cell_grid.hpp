@@ -18,6 +18,8 @@ struct RunTask {
     double acceleration = 0;
     /// Override: scales the path's velocity limit. (0, 1].
     double velocity_factor = 1;
+    /// > 0: comes to rest as soon as it can, and `to` is halt_way() with this share of the limits: the search begins with that braking.
+    double halt_share = 0;
 };
 
 class CellGrid {

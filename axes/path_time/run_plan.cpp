@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "axes/path_time/along_limits.hpp"
+#include "axes/path_time/braking.hpp"
 #include "core/math.hpp"
 
 namespace taktwerk::axes {
@@ -12,13 +13,13 @@ namespace {
 constexpr int rounds_at_most = 9;
 constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
-constexpr double slow_share = 0.02;    // of v2: what goes on where a former plan stopped
-constexpr double longest_piece = 0.1;  // s
-constexpr double most_parts = 1500;    // that pieces are cut into
-constexpr double braking_share = 0.7;  // of the deceleration, to a lowered velocity
-constexpr int window = 192;            // cells that are solved and stay
-constexpr int look_ahead = 48;         // cells behind them that are solved with them, at least: as far as braking would reach
-constexpr int beside = 10;             // cells on both sides that are solved again with one that was beyond a limit
+constexpr double slow_share = 0.02;     // of v2: what goes on where a former plan stopped
+constexpr double longest_piece = 0.02;  // s
+constexpr double most_parts = 2500;     // that pieces are cut into
+constexpr double braking_share = 0.7;   // of the deceleration, to a lowered velocity
+constexpr int window = 192;             // cells that are solved and stay
+constexpr int look_ahead = 48;          // cells behind them that are solved with them, at least: as far as braking would reach
+constexpr int beside = 10;              // cells on both sides that are solved again with one that was beyond a limit
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -160,6 +161,30 @@ void RunPlanner::first_guess() {
     for (std::size_t i = 0; i < n; ++i) {
         reach_[i] = middles_[i] / (2 * deceleration[i]) + std::sqrt(middles_[i]) * reach_[i];
         middles_[i] *= 0.5;
+    }
+}
+
+/// A halt: the grid is its own, for the former plan's cells are as long as suits who goes on. The first guess is braking in time, along a straight line.
+void RunPlanner::brake() {
+    first_guess();
+    const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
+    const Braking braking(task_.velocity, task_.acceleration, task_.halt_share * l.deceleration, task_.halt_share * l.jerk);
+    const double whole = task_.to - task_.from, stretched = braking.way() > 0 ? whole / braking.way() : 1;
+    constexpr int samples = 256;
+    int next = 1;
+    Braking::State before = braking.at(0), behind = before;
+    const auto square = [&](double s) {
+        const double way = (s - task_.from) / stretched;
+        while (behind.way < way && next <= samples) {
+            before = behind;
+            behind = braking.at(braking.duration() * next++ / samples);
+        }
+        const double gap = behind.way - before.way, part = gap > 0 ? std::min((way - before.way) / gap, 1.0) : 1;
+        return std::pow(std::max(before.velocity + part * (behind.velocity - before.velocity), 0.0), 2);
+    };
+    for (std::size_t i = 0; i < middles_.size(); ++i) {
+        const double a = grid_.nodes[i], b = grid_.nodes[i + 1], first = square(a), middle = square((a + b) / 2), last = square(b);
+        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
     }
 }
 
@@ -422,9 +447,13 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     beyond_.clear();
     split_.clear();
     splits_left_ = split_rounds;
-    grid_.make(*curve_, limits_, task, former != nullptr && former->coarse ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
+    grid_.make(*curve_, limits_, task,
+               former != nullptr && former->coarse && task.halt_share <= 0 ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
     shares_.assign(grid_.nodes.size() - 1, untouched);
-    if (former != nullptr && !from_rest()) {
+    if (task.halt_share > 0 && !from_rest()) {
+        make_problem();
+        brake();
+    } else if (former != nullptr && !from_rest()) {
         take_over(*former);
     } else {
         make_problem();

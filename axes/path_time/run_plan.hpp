@@ -55,6 +55,7 @@ private:
     void add_cell(int cell);
     void first_guess();
     void take_over(const RunShape& former);
+    void brake();
     bool sweep(SpeedGuess guess, RunPlan& out);
     bool solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out);
     void come_near(const CellRange& cells, const std::vector<double>& middles) override;
