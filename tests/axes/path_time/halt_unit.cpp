@@ -1,4 +1,4 @@
-// A halt, whenever it comes: in a ramp up, in a cruise, in a ramp down. On a straight line, where the least time is known by hand.
+// A halt and a lowered override, whenever they come: in a ramp up, in a cruise. On a straight line, where the least time is known by hand.
 
 #include <gtest/gtest.h>
 
@@ -96,6 +96,40 @@ TEST(Halt, ComesSoonWheneverItIsWished) {
             }
     EXPECT_GT(halts, 100);
     EXPECT_GT(in_ramps, 40);
+}
+
+// The same of a lowered override, with seven tenths of the limits: on the cells of the former plan none was found in a cruise, and it had no effect.
+TEST(Halt, ALoweredOverrideIsComeToSoon) {
+    int lowered = 0;
+    for (const double velocity : {5.0, 20.0, 100.0})
+        for (const double length : {20.0, 100.0, 1000.0})
+            for (const double factor : {0.05, 0.4})
+                for (int when = 12; when < 2000; when += when < 200 ? 24 : 390) {
+                    if (length > 50 * velocity) break;
+                    Line line(length, velocity), free(length, velocity);
+                    const PathWish go, slower{.velocity_factor = factor};
+                    for (int i = 0; i < when; ++i) {
+                        line.step(go);
+                        free.step(go);
+                    }
+                    if (free.player.now().acceleration < -1 || free.player.now().velocity < factor * velocity) continue;
+                    constexpr int delay = 50;  // cycles
+                    double longest = 0;
+                    for (int i = 0; i < delay; ++i) {
+                        free.step(go);
+                        const auto& now = free.player.now();
+                        longest = std::max(longest, (i + 1) * cycle + least_time(now.velocity, std::max(now.acceleration, 0.0)) / 0.65);
+                    }
+                    ++lowered;
+                    int cycles = 0;
+                    while (line.player.now().velocity > factor * velocity * (1 + 1e-3) && cycles < 5000) {
+                        line.step(slower);
+                        ++cycles;
+                    }
+                    ASSERT_LE(cycles * cycle, longest + 2 * cycle)
+                        << velocity << " u/s over " << length << " after " << when << " to " << factor;
+                }
+    EXPECT_GT(lowered, 50);
 }
 
 }  // namespace
