@@ -213,7 +213,8 @@ void AxisGroup::go_on(Duration period) noexcept {
     if (!begun_ || !queue_.has_active()) return;
     // The set-point has gone over to the way of a later command (G-061).
     while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
-        queue_.finish_active(Outcome::done);
+        const auto passed = run_.verdict(queue_.active().id).value_or(ErrorId::none);  // one that makes no way lies in no run
+        queue_.finish_active(passed == ErrorId::none ? Outcome::done : Outcome::error, passed);
         queue_.activate_next();
         elapsed_ = {};
     }

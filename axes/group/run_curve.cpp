@@ -104,10 +104,7 @@ double RunCurve::next_stop(double s) const noexcept {
 double RunCurve::feature(double s, CurveSide side) const noexcept {
     const std::size_t i = index(s, side);
     const PathSection& section = path.sections()[i];
-    // A later stretch begins between two cells only: a stop does not wait for the end of a long one.
-    constexpr double longest_cell = 0.02;  // s
-    const double velocity = on(i, s).path.velocity;
-    const double own = std::min(section.element.feature(section.from + s - section.begin), longest_cell * velocity);
+    const double own = section.element.feature(section.from + s - section.begin);
     if (!seen[i].run.through_arm) return own;
     // By how much q' changes, weighed by what each member can do.
     const WayPoint w = place(i, s);

@@ -15,6 +15,9 @@ constexpr int stations_between = 8;  // of a span that bends
 // A cell is at most this part of a run; of one where it bends; of one of many spans.
 constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
 constexpr double rest_share = 0.2;  // of the way with jerk that the piece at rest takes
+// That piece cannot be cut, and who wants to stand waits for its end: it lasts no longer than this at a beginning.
+constexpr double longest_start = 0.012;  // s
+constexpr double cells_of_braking = 40;  // to a lowered velocity
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
 constexpr double fewer = 2.7;
@@ -28,7 +31,9 @@ void CellGrid::add_breaks(const RunTask& task) {
     breaks.clear();
     breaks.push_back(task.from);
     while (breaks.back() < task.to) {
-        const double next = std::min(curve_->next_break(breaks.back()), task.to);
+        double next = std::min(curve_->next_break(breaks.back()), task.to);
+        const double brakes_to = task.from + task.brake_way, gap = 0.1 * task.brake_way;
+        if (breaks.back() < brakes_to - gap && brakes_to + gap < next) next = brakes_to;
         // A sliver would be a cell of no length.
         if (next - breaks.back() < 1e-12 * (std::fabs(task.to) + 1e-300) || (task.to - next < 1e-9 * (task.to - task.from))) {
             breaks.push_back(task.to);
@@ -39,7 +44,7 @@ void CellGrid::add_breaks(const RunTask& task) {
 }
 
 /// Places with the size of cells there: all breaks, and some between them where the curve bends.
-void CellGrid::add_stations(double largest) {
+void CellGrid::add_stations(double largest_of_run, double brake_way) {
     stations_.clear();
     sizes_.clear();
     bends_.clear();
@@ -47,6 +52,8 @@ void CellGrid::add_stations(double largest) {
     const auto feature = [&](double s, CurveSide side) { return fineness * curve_->feature(s, side); };
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
         const double a = breaks[i], length = breaks[i + 1] - a;
+        const bool brakes = a < breaks.front() + 0.95 * brake_way;
+        const double largest = brakes ? std::min(largest_of_run, brake_way / cells_of_braking) : largest_of_run;
         const double middle = feature(a + length / 2, CurveSide::after);
         const double begins = std::min({largest, length, feature(a, CurveSide::after)});
         if (i == 0) {
@@ -68,7 +75,7 @@ void CellGrid::add_stations(double largest) {
                 for (const double part : {0.2, 0.4, 0.6, 0.8}) least = std::min(least, feature(s - part * gap, CurveSide::after));
             else if (between > 1) least = std::min(least, feature(s - 0.5 * gap, CurveSide::after));
             sizes_.back() = std::min(sizes_.back(), std::max(least, sizes_.back() / 16));
-            bends_.push_back(between > 1 ? Bends::much : middle < unlimited ? Bends::little : Bends::not_at_all);
+            bends_.push_back(between > 1 || brakes ? Bends::much : middle < unlimited ? Bends::little : Bends::not_at_all);
             stations_.push_back(s);
             sizes_.push_back(least);
         }
@@ -105,11 +112,14 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     const bool from_rest = task.velocity <= 0;
     start = {};
     end = {};
-    if (from_rest) start.rest_length = rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]);
-    else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
+    if (from_rest) {
+        const double jerk = along_limits(curve.at(task.from, CurveSide::after), limits, 1).jerk;
+        start.rest_length = std::min(rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]),
+                                     jerk * longest_start * longest_start * longest_start / 6);
+    } else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
-    add_stations(whole / (coarse ? most_of_coarse_run : most_of_run));
+    add_stations(whole / (coarse ? most_of_coarse_run : most_of_run), task.brake_way);
     // A quadratic with this beginning has to stay positive over the first cell.
     if (!from_rest && start.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start.square / -start.slope);
     if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start.rest_length);

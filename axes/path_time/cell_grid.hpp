@@ -18,6 +18,10 @@ struct RunTask {
     double acceleration = 0;
     /// Override: scales the path's velocity limit. (0, 1].
     double velocity_factor = 1;
+    /// > 0: comes to rest as soon as it can, and `to` is halt_way() with this share of the limits: the search begins with that braking.
+    double halt_share = 0;
+    /// From a moving state: so long it brakes for a lowered velocity. The cells are small there.
+    double brake_way = 0;
 };
 
 class CellGrid {
@@ -34,7 +38,7 @@ public:
 
 private:
     void add_breaks(const RunTask& task);
-    void add_stations(double largest);
+    void add_stations(double largest_of_run, double brake_way);
     [[nodiscard]] double size_at(double s, std::size_t& station) const;
     void add_nodes();
     void split_at_narrow_places();

@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "axes/path_time/along_limits.hpp"
+#include "axes/path_time/braking.hpp"
 
 namespace taktwerk::axes {
 namespace {
 
+constexpr double first_share = 0.98;  // of the limits, that a halt is tried with first
 constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
 constexpr int most_stops = 12;
 constexpr double furthest_border = 0.25;  // s behind the first one
@@ -54,14 +56,14 @@ void PathService::send(int at_piece, const RunTask& task, bool stands, std::uint
 /// To rest as soon as can be: at the least distance at which a plan is found.
 bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former) {
     const AlongLimits l = along_limits(curve.at(task.from, CurveSide::after), limits_, 1);
-    // From v and a with full jerk: what is left of the acceleration goes, then deceleration comes and goes.
-    const double v = task.velocity + std::max(task.acceleration, 0.0) * std::fabs(task.acceleration) / (2 * l.jerk);
-    const double ramp = l.deceleration / l.jerk;
-    double way = v * v / (2 * l.deceleration) + v * ramp / 2 + v * std::fabs(task.acceleration) / l.jerk;
-    if (task.acceleration < 0) way = task.velocity * task.velocity / (2 * l.deceleration);
-    for (int i = 0; i < most_stops; ++i, way *= stop_growth) {
+    // As along a straight line with all of the limits, then with ever less of them.
+    double share = first_share;
+    for (int i = 0; i < most_stops; ++i, share /= stop_growth) {
+        const double way = Braking(task.velocity, task.acceleration, share * l.deceleration, share * l.jerk).way();
         task.to = task.from + way;
-        if (task.to >= furthest) return false;
+        task.halt_share = share;
+        const bool goes = task.to > task.from + 1e-12 * std::fabs(task.from);  // or what runs comes to rest as soon
+        if (!goes || !(task.to < furthest)) return false;
         planner_.plan(curve, limits_, task, plan_, former);
         if (plan_.found) return true;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "axes/path_time/along_limits.hpp"
+#include "axes/path_time/braking.hpp"
 #include "core/math.hpp"
 
 namespace taktwerk::axes {
@@ -12,13 +13,13 @@ namespace {
 constexpr int rounds_at_most = 9;
 constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
-constexpr double slow_share = 0.02;    // of v2: what goes on where a former plan stopped
-constexpr double longest_piece = 0.1;  // s
-constexpr double most_parts = 1500;    // that pieces are cut into
-constexpr double braking_share = 0.7;  // of the deceleration, to a lowered velocity
-constexpr int window = 192;            // cells that are solved and stay
-constexpr int look_ahead = 48;         // cells behind them that are solved with them, at least: as far as braking would reach
-constexpr int beside = 10;             // cells on both sides that are solved again with one that was beyond a limit
+constexpr double slow_share = 0.02;     // of v2: what goes on where a former plan stopped
+constexpr double longest_piece = 0.02;  // s
+constexpr double most_parts = 2500;     // that pieces are cut into
+constexpr double braking_share = 0.7;   // of the deceleration, to a lowered velocity
+constexpr int window = 192;             // cells that are solved and stay
+constexpr int look_ahead = 48;          // cells behind them that are solved with them, at least: as far as braking would reach
+constexpr int beside = 10;              // cells on both sides that are solved again with one that was beyond a limit
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -163,6 +164,30 @@ void RunPlanner::first_guess() {
     }
 }
 
+/// A halt: the grid is its own, for the former plan's cells are as long as suits who goes on. The first guess is braking in time, along a straight line.
+void RunPlanner::brake() {
+    first_guess();
+    const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
+    const Braking braking(task_.velocity, task_.acceleration, task_.halt_share * l.deceleration, task_.halt_share * l.jerk);
+    const double stretched = braking.way() > 0 ? (task_.to - task_.from) / braking.way() : 1;
+    BrakingByWay by_way(braking);
+    const auto square = [&](double s) { return std::pow(by_way.velocity((s - task_.from) / stretched), 2); };
+    for (std::size_t i = 0; i < middles_.size(); ++i) {
+        const double begin = grid_.nodes[i], end = grid_.nodes[i + 1];
+        const double first = square(begin), middle = square((begin + end) / 2), last = square(end);
+        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+    }
+}
+
+/// To a lowered velocity factor, where the beginning is above it.
+Braking RunPlanner::braking_to_factor() const {
+    const TimedCurvePoint p = curve_->at(task_.from, CurveSide::after);
+    const AlongLimits l = along_limits(p, limits_, 1);
+    const double wanted = std::min(l.velocity, p.path.velocity) * task_.velocity_factor;
+    return {task_.velocity, task_.acceleration, braking_share * l.deceleration, braking_share * l.jerk,
+            std::min(0.7 * wanted, task_.velocity)};
+}
+
 /// From a moving state: the cells of the former plan as long as it does not brake for its end for good, and its v2 as the first guess. Where
 /// that comes near rest but the path goes on, a slow motion that keeps every limit goes on instead.
 void RunPlanner::take_over(const RunShape& former) {
@@ -170,11 +195,11 @@ void RunPlanner::take_over(const RunShape& former) {
     const auto begin = std::lower_bound(former.nodes.begin(), former.nodes.end(), task_.from - hair);
     const auto from = static_cast<std::size_t>(begin - former.nodes.begin());
     if (begin == former.nodes.end()) return;
-    const bool same_end = std::fabs(task_.to - former.end) < 1e-9 * whole;
+    const bool same_end = std::fabs(task_.to - former.end)<1e-9 * whole, own_cells = task_.brake_way> 0;
     std::size_t kept = former.nodes.size() - 1;
-    if (!same_end) {
+    if (!same_end && !own_cells) {
         while (kept > from && (former.squares[kept] <= former.squares[kept - 1] || former.nodes[kept] > grid_.nodes.back())) --kept;
-    } else {
+    } else if (!own_cells) {
         grid_.end.rest_length = task_.to - former.nodes.back();
     }
     std::vector<double> nodes(former.nodes.begin() + static_cast<std::ptrdiff_t>(from),
@@ -183,7 +208,7 @@ void RunPlanner::take_over(const RunShape& former) {
     if (!same_end)
         for (const double node : grid_.nodes)
             if (node > nodes.back() + 1e-9 * whole) nodes.push_back(node);
-    grid_.nodes.swap(nodes);
+    if (!own_cells) grid_.nodes.swap(nodes);
     shares_.assign(grid_.nodes.size() - 1, untouched);
     make_problem();
 
@@ -196,18 +221,16 @@ void RunPlanner::take_over(const RunShape& former) {
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
-    // A lowered velocity factor, a nearer end: braking to what is allowed, as soon as what is left of the acceleration has gone.
-    const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
-    const double ramp = task_.velocity * (std::max(task_.acceleration, 0.0) + l.deceleration) / l.jerk;
-    const bool slower = task_.velocity_factor < former.velocity_factor || task_.to < former.end - 1e-9 * whole;
-    double brakes = slower ? task_.velocity * task_.velocity : unlimited;
+    // A lowered velocity factor: braking to what is allowed.
+    const Braking braking = braking_to_factor();
+    BrakingByWay by_way(braking);
+    const bool slower = task_.velocity_factor < former.velocity_factor;
+    const auto braked_square = [&](double s) { return slower ? std::pow(by_way.velocity(s - task_.from), 2) : unlimited; };
     first_window_ = 0;
     for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
-        const double first = former_square(grid_.nodes[i]), middle = former_square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2),
-                     last = former_square(grid_.nodes[i + 1]);
-        if (grid_.nodes[i] > task_.from + ramp)
-            brakes -= braking_share * 2 * along_limits(check_.middle(i), limits_, 1).deceleration * (grid_.nodes[i + 1] - grid_.nodes[i]);
-        const double lowered = std::max(brakes, middles_[i]);
+        const double half = (grid_.nodes[i] + grid_.nodes[i + 1]) / 2;
+        const double first = former_square(grid_.nodes[i]), middle = former_square(half), last = former_square(grid_.nodes[i + 1]);
+        const double lowered = std::max(braked_square(half), middles_[i]);
         middles_[i] = std::min(std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]), lowered);
         if (middle > 0) first_window_ = static_cast<int>(i) + 1;
     }
@@ -422,9 +445,17 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     beyond_.clear();
     split_.clear();
     splits_left_ = split_rounds;
-    grid_.make(*curve_, limits_, task, former != nullptr && former->coarse ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
+    if (former != nullptr && task.velocity > 0 && task.halt_share <= 0 && task.velocity_factor < former->velocity_factor) {
+        const double way = braking_to_factor().way();
+        if (way > 0 && way < 0.9 * (task.to - task.from)) task_.brake_way = way;
+    }
+    grid_.make(*curve_, limits_, task_,
+               former != nullptr && former->coarse && task.halt_share <= 0 ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
     shares_.assign(grid_.nodes.size() - 1, untouched);
-    if (former != nullptr && !from_rest()) {
+    if (task.halt_share > 0 && !from_rest()) {
+        make_problem();
+        brake();
+    } else if (former != nullptr && !from_rest()) {
         take_over(*former);
     } else {
         make_problem();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "axes/path_time/braking.hpp"
 #include "axes/path_time/cell_check.hpp"
 #include "axes/path_time/cell_grid.hpp"
 #include "axes/path_time/curve.hpp"
@@ -55,6 +56,8 @@ private:
     void add_cell(int cell);
     void first_guess();
     void take_over(const RunShape& former);
+    void brake();
+    [[nodiscard]] Braking braking_to_factor() const;
     bool sweep(SpeedGuess guess, RunPlan& out);
     bool solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out);
     void come_near(const CellRange& cells, const std::vector<double>& middles) override;

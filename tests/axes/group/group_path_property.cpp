@@ -90,7 +90,7 @@ TEST(GroupPathProperty, ProgramsOfAxesArrive) {
 }
 
 TEST(GroupPathProperty, ProgramsOfThePoseArrive) {
-    for (std::size_t i = 0; i < property_cases(2) && !HasFailure(); ++i) {
+    for (std::size_t i = 0; i < property_cases(5) && !HasFailure(); ++i) {
         SCOPED_TRACE(::testing::Message() << "program " << i);
         Drawn(4000 + i, cartesian_arm()).run();
     }

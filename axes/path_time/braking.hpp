@@ -1,0 +1,69 @@
+#pragma once
+// Braking to rest, or to a lower velocity, with constant limits: jerk, then deceleration, then jerk again. Where a search begins.
+
+#include <cmath>
+
+namespace taktwerk::axes {
+
+class Braking {
+public:
+    /// From velocity v > to >= 0 and acceleration a [u/s, u/s2], which may be of either sign; deceleration and jerk > 0.
+    Braking(double from, double a, double deceleration, double jerk, double to = 0) noexcept : to_(to), v_(from - to), a_(a), jerk_(jerk) {
+        const double v = v_;
+        const double most = std::sqrt(std::fmax(jerk * v + a * a / 2, 0.0));
+        peak_ = std::fmax(std::fmin(most, deceleration), std::fmax(-a, 0.0));
+        ramp_ = (a + peak_) / jerk;
+        last_ = peak_ / jerk;
+        hold_ = peak_ > 0 ? std::fmax((v + (a * a / 2 - peak_ * peak_) / jerk) / peak_, 0.0) : 0.0;
+    }
+    [[nodiscard]] double duration() const noexcept { return ramp_ + hold_ + last_; }
+    [[nodiscard]] double way() const noexcept { return at(duration()).way; }
+
+    struct State {
+        double way, velocity;
+    };
+    /// Behind its end it stays at the lower velocity.
+    [[nodiscard]] State at(double t) const noexcept {
+        const State s = beyond(t);
+        return {s.way + to_ * t, s.velocity + to_};
+    }
+
+private:
+    [[nodiscard]] State beyond(double t) const noexcept {
+        const double one = std::fmin(t, ramp_);
+        State s{one * (v_ + one * (a_ / 2 - one * jerk_ / 6)), v_ + one * (a_ - one * jerk_ / 2)};
+        if (t <= ramp_) return s;
+        const double two = std::fmin(t - ramp_, hold_);
+        s = {s.way + two * (s.velocity - two * peak_ / 2), s.velocity - two * peak_};
+        if (t <= ramp_ + hold_) return s;
+        const double three = std::fmin(t - ramp_ - hold_, last_);
+        return {s.way + three * (s.velocity - three * (peak_ / 2 - three * jerk_ / 6)), s.velocity - three * (peak_ - three * jerk_ / 2)};
+    }
+
+    double to_;
+    double v_, a_, jerk_;               // v: above that
+    double peak_, ramp_, hold_, last_;  // deceleration; times of the three parts
+};
+
+/// The same by its way; asked for in ascending order.
+class BrakingByWay {
+public:
+    explicit BrakingByWay(const Braking& braking) noexcept : braking_(braking), before_(braking.at(0)), behind_(before_) {}
+
+    [[nodiscard]] double velocity(double way) noexcept {
+        while (behind_.way < way && next_ <= samples) {
+            before_ = behind_;
+            behind_ = braking_.at(braking_.duration() * next_++ / samples);
+        }
+        const double gap = behind_.way - before_.way, part = gap > 0 ? std::fmin((way - before_.way) / gap, 1.0) : 1;
+        return std::fmax(before_.velocity + part * (behind_.velocity - before_.velocity), 0.0);
+    }
+
+private:
+    static constexpr int samples = 256;
+    Braking braking_;
+    Braking::State before_, behind_;
+    int next_ = 1;
+};
+
+}  // namespace taktwerk::axes

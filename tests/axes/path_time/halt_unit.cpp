@@ -1,0 +1,136 @@
+// A halt and a lowered override, whenever they come: in a ramp up, in a cruise. On a straight line, where the least time is known by hand.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "axes/path_time/braking.hpp"
+#include "axes/path_time/path_player.hpp"
+#include "axes/path_time/path_service.hpp"
+#include "tests/axes/path_time/path_curve.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+constexpr double acceleration = 1000, jerk = 10'000, cycle = 1e-3;
+
+/// From v and a: what is left of the acceleration goes, then the deceleration comes, holds, and goes.
+double least_time(double v, double a) {
+    const double first = std::max(a, 0.0) / jerk, top = v + std::max(a, 0.0) * first / 2;
+    const double brakes = top * jerk >= acceleration * acceleration ? top / acceleration + acceleration / jerk : 2 * std::sqrt(top / jerk);
+    return first + brakes;
+}
+
+struct Line {
+    Line(double length, double velocity) {
+        PathVector to = PathVector::Zero();
+        to[0] = length;
+        PathMove move;
+        move.element = PathElement::line(PathVector::Zero(), to);
+        move.feed = {velocity, acceleration, acceleration, jerk};
+        EXPECT_TRUE(path.append(move, {}).ok());
+    }
+    void step(const PathWish& wish) {
+        (void)player.step(cycle);
+        (void)service.step(curve, path.length(), wish);
+    }
+
+    Path path;
+    PathCurve curve{path, 1};
+    std::unique_ptr<StretchExchange> exchange = std::make_unique<StretchExchange>();
+    PathService service{{{1e3, acceleration, jerk}}, *exchange, 0.008};
+    PathPlayer player{*exchange};
+};
+
+TEST(Halt, BrakingEndsAtRest) {
+    for (const double v : {0.01, 3.0, 250.0})
+        for (const double a : {-40.0, 0.0, 700.0}) {
+            const Braking braking(v, a, acceleration, jerk);
+            const double end = braking.duration();
+            if (a < 0 && v < a * a / (2 * jerk)) continue;  // it brakes too hard for what is left
+            EXPECT_NEAR(braking.at(end).velocity, 0, 1e-9 * v);
+            if (a >= 0) {
+                EXPECT_NEAR(end, least_time(v, a), 1e-9);
+            }
+            double way = 0;
+            constexpr int parts = 20'000;
+            for (int i = 0; i < parts; ++i) way += braking.at(end * (i + 0.5) / parts).velocity * end / parts;
+            EXPECT_NEAR(braking.way(), way, 1e-6 * way);
+        }
+}
+
+// It begins behind the piece under way (20 ms at most) and the lead of 8 ms with the piece in which that ends; until then the motion goes on. From
+// there it takes a fifth longer than the hardest one, at most. A ramp up is no exception: there halts were often not found before its end.
+TEST(Halt, ComesSoonWheneverItIsWished) {
+    int halts = 0, in_ramps = 0;
+    for (const double velocity : {5.0, 20.0, 100.0})
+        for (const double length : {0.5, 5.0, 100.0, 1000.0})
+            for (int when = 3; when < 2000; when += when < 200 ? 18 : 290) {
+                if (length > 50 * velocity) break;  // more than 2500 pieces of 20 ms: they are longer there
+                Line line(length, velocity), free(length, velocity);
+                const PathWish go, stand{.motion = PathWish::Motion::stand};
+                for (int i = 0; i < when; ++i) {
+                    line.step(go);
+                    free.step(go);
+                }
+                if (!(line.player.now().velocity > 0) || line.player.now().acceleration < 0) continue;
+                constexpr int delay = 50;  // cycles
+                double longest = 0, furthest = 0;
+                for (int i = 0; i < delay; ++i) {
+                    free.step(go);
+                    const auto& now = free.player.now();
+                    const double left = (i + 1) * cycle + 1.2 * least_time(now.velocity, std::max(now.acceleration, 0.0));
+                    longest = std::max(longest, left);
+                    furthest = std::max(furthest, now.s + now.velocity * 1.2 * least_time(now.velocity, std::max(now.acceleration, 0.0)));
+                }
+                ++halts;
+                in_ramps += line.player.now().acceleration > 0.1 * acceleration ? 1 : 0;
+                int cycles = 0;
+                while (!line.player.standing() && cycles < 5000) {
+                    line.step(stand);
+                    ++cycles;
+                }
+                ASSERT_LE(cycles * cycle, longest + 2 * cycle) << velocity << " u/s over " << length << " after " << when;
+                ASSERT_LE(line.player.now().s, furthest) << velocity << " u/s over " << length << " after " << when;
+            }
+    EXPECT_GT(halts, 100);
+    EXPECT_GT(in_ramps, 40);
+}
+
+// The same of a lowered override, with seven tenths of the limits: on the cells of the former plan none was found in a cruise, and it had no effect.
+TEST(Halt, ALoweredOverrideIsComeToSoon) {
+    int lowered = 0;
+    for (const double velocity : {5.0, 20.0, 100.0})
+        for (const double length : {20.0, 100.0, 1000.0})
+            for (const double factor : {0.05, 0.4})
+                for (int when = 12; when < 2000; when += when < 200 ? 24 : 390) {
+                    if (length > 50 * velocity) break;
+                    Line line(length, velocity), free(length, velocity);
+                    const PathWish go, slower{.velocity_factor = factor};
+                    for (int i = 0; i < when; ++i) {
+                        line.step(go);
+                        free.step(go);
+                    }
+                    if (free.player.now().acceleration < -1 || free.player.now().velocity < factor * velocity) continue;
+                    constexpr int delay = 50;  // cycles
+                    double longest = 0;
+                    for (int i = 0; i < delay; ++i) {
+                        free.step(go);
+                        const auto& now = free.player.now();
+                        longest = std::max(longest, (i + 1) * cycle + least_time(now.velocity, std::max(now.acceleration, 0.0)) / 0.65);
+                    }
+                    ++lowered;
+                    int cycles = 0;
+                    while (line.player.now().velocity > factor * velocity * (1 + 1e-3) && cycles < 5000) {
+                        line.step(slower);
+                        ++cycles;
+                    }
+                    ASSERT_LE(cycles * cycle, longest + 2 * cycle)
+                        << velocity << " u/s over " << length << " after " << when << " to " << factor;
+                }
+    EXPECT_GT(lowered, 50);
+}
+
+}  // namespace
+}  // namespace taktwerk::axes
