@@ -6,6 +6,10 @@
 
 namespace taktwerk::axes {
 
+/// The same as people write it: X Y Z, then RX RY RZ in rad: turned about Z by RZ, then about the new Y by RY, then about the new X by RX (G-078 of
+/// docs/motion/group-decisions.md).
+using SixNumbers = std::array<double, 6>;
+
 /// A frame seen from another one: its origin and the rotation of its axes. Right-handed.
 struct Pose {
     std::array<double, 3> position{};               ///< x, y, z in the machine's unit of length

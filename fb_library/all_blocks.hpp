@@ -6,10 +6,13 @@
 #include "fb_library/block_type.hpp"
 #include "fb_library/fieldbus/sdo.hpp"
 #include "fb_library/groups/group_administration.hpp"
+#include "fb_library/groups/group_arm_blocks.hpp"
+#include "fb_library/groups/group_frames.hpp"
 #include "fb_library/groups/group_limits.hpp"
 #include "fb_library/groups/group_moves.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
+#include "fb_library/groups/group_tools.hpp"
 #include "fb_library/groups/group_values.hpp"
 #include "fb_library/iec/bistables.hpp"
 #include "fb_library/iec/counters.hpp"
@@ -94,7 +97,12 @@ using GroupBlocks = BlockList<MC_AddAxisToGroup, MC_RemoveAxisFromGroup, MC_Ungr
                               MC_GroupReadCommandInfo, MC_GroupWriteDefaultDynamics, MC_GroupReadDefaultDynamics, MC_GroupStop,
                               MC_GroupHalt, MC_GroupInterrupt, MC_GroupContinue, MC_GroupReadStatus, MC_GroupReadError, MC_GroupReset,
                               MC_GroupReadSWLimits, MC_MoveLinearAbsolute, MC_MoveLinearRelative, MC_MoveCircularAbsolute,
-                              MC_MoveCircularRelative, MC_MoveDirectAbsolute, MC_MoveDirectRelative, MC_GroupWaitTime, MC_GroupSetOverride>;
+                              MC_MoveCircularRelative, MC_MoveDirectAbsolute, MC_MoveDirectRelative, MC_GroupWaitTime, MC_GroupSetOverride,
+                              MC_SetCartesianTransform, MC_SetCoordinateTransform, MC_ReadCartesianTransform, MC_ReadCoordinateTransform,
+                              MC_ReadKinTransform, MC_ReadDHParameters, MC_ReadJointInfo, MC_GroupTransformPosition, MC_GroupSetPosition,
+                              MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool, MC_GroupWritePayloadData,
+                              MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
+                              MC_GroupReadRigidBodyDynamic>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 

@@ -30,6 +30,8 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
     : config_(std::move(config)), members_(axes), run_(config_.kinematics, cycle) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;
+    equipment_ = config_.equipment;
+    equipment_.arm = facts_of(config_.kinematics.get());
     publish();
 }
 
@@ -109,7 +111,7 @@ void AxisGroup::plan(Instant, Duration period) noexcept {
         }
     }
     publish();
-    see_tool(view_, config_.kinematics.get());
+    if (config_.kinematics) see_tool(view_, config_.kinematics.get(), moves_with_tool() ? run_.carried().tool : equipment_.tool_pose());
 }
 
 /// The group stands: what comes next.
@@ -170,9 +172,9 @@ void AxisGroup::send_waiting() noexcept {
     if (!run_.exists() || run_.stops()) return;
     const auto send = [this](const AcceptedGroupCommand& accepted, const AcceptedGroupCommand* before) {
         const auto& command = accepted.command;
-        if (accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
+        if (is_setting(command.kind) || accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow;
-        if (!run_.send(accepted.id, command, resolved(command.dynamics, view_.default_dynamics), joins)) return false;
+        if (!run_.send(accepted.id, command, accepted.place, resolved(command.dynamics, view_.default_dynamics), joins)) return false;
         sent_ = accepted.id;
         return true;
     };
@@ -181,7 +183,7 @@ void AxisGroup::send_waiting() noexcept {
     for (std::size_t i = 0; i < queue_.waiting(); ++i) {
         const auto& next = queue_.waiting_at(i);
         if (!send(next, before)) return;
-        before = &next;
+        if (!is_setting(next.command.kind)) before = &next;  // nothing to stand still for
     }
 }
 
@@ -191,6 +193,7 @@ bool AxisGroup::begin_active() noexcept {
         begun_ = true;
         elapsed_ = {};
         if (active.command.kind == GroupCommandKind::wait) return true;
+        if (is_setting(active.command.kind)) return finish_setting(), false;
         queue_.finish_active(Outcome::done);
         return false;
     }
@@ -216,6 +219,7 @@ void AxisGroup::go_on(Duration period) noexcept {
         const auto passed = run_.verdict(queue_.active().id).value_or(ErrorId::none);  // one that makes no way lies in no run
         queue_.finish_active(passed == ErrorId::none ? Outcome::done : Outcome::error, passed);
         queue_.activate_next();
+        for (; is_setting(queue_.active().command.kind) && queue_.waiting() > 0; queue_.activate_next()) finish_setting();
         elapsed_ = {};
     }
     const auto& active = queue_.active();
@@ -244,6 +248,9 @@ void AxisGroup::publish() noexcept {
     view_.member_count = static_cast<std::uint8_t>(members_.count());
     view_.kinematics = has_all_joints(config_.kinematics.get(), members_);
     view_.members = members_.refs();
+    const bool with_tool = moves_with_tool();
+    equipment_.active_tool = with_tool ? run_.carried().tool_number : equipment_.selected_tool;
+    equipment_.active_payload = with_tool ? run_.carried().payload_number : equipment_.selected_payload;
     view_.powered = view_.online = view_.in_position = view_.member_count > 0;
     const bool led = members_.led();
     for (std::size_t i = 0; i < most_members; ++i) {

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "axes/group/group_config.hpp"
+#include "axes/group/group_equipment.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_queue.hpp"
 #include "axes/group/group_state.hpp"
@@ -30,6 +31,7 @@ public:
 
     [[nodiscard]] const AxisGroupConfig& config() const noexcept { return config_; }
     [[nodiscard]] const GroupView& view() const noexcept { return view_; }
+    [[nodiscard]] const GroupEquipment& equipment() const noexcept { return equipment_; }
     [[nodiscard]] bool contains(AxisRef axis) const noexcept { return members_.contains(axis); }
     /// Its axes follow it now.
     [[nodiscard]] bool leads() const noexcept { return members_.led(); }
@@ -55,6 +57,11 @@ public:
 
 private:
     [[nodiscard]] bool waits(const GroupCommand& command) const noexcept;
+    /// What it takes with it if it is accepted now.
+    [[nodiscard]] CommandPlace place_of(const GroupCommand& command) const noexcept;
+    Submitted take_setting(const GroupCommand& command, Owner owner) noexcept;
+    ErrorId equip(const GroupSetting& setting) noexcept;
+    ErrorId set_position(const GroupCommand& command, Owner owner) noexcept;
     [[nodiscard]] JointVector here() const noexcept;
     [[nodiscard]] ErrorId refuse(const GroupCommand& command, Owner owner) const noexcept;
     [[nodiscard]] ErrorId refuse_state(const GroupCommand& command) const noexcept;
@@ -79,6 +86,10 @@ private:
     void send_waiting() noexcept;
     void go_on(Duration period) noexcept;
     void watch_reset() noexcept;
+    /// The active one, where it is a setting: done.
+    void finish_setting() noexcept;
+    /// A command is gone with what it took; else what is selected counts.
+    [[nodiscard]] bool moves_with_tool() const noexcept { return (members_.led() || interrupted_) && run_.exists() && run_.command() != 0; }
     void publish() noexcept;
 
     AxisGroupConfig config_;
@@ -86,6 +97,7 @@ private:
     GroupQueue queue_;
     PathRun run_;
     GroupView view_;      // and its settings: override, dynamics, error, reset
+    GroupEquipment equipment_;
     JointVector hold_{};  // where the members stand without a run
     GroupState state_ = GroupState::GroupDisabled;
     bool begun_ = false;           // the active command has begun

@@ -45,6 +45,27 @@ void AxisGroups::release_stop(GroupRef group, CommandId id, Owner) noexcept {
     if (auto* found = find(group)) found->release_stop(id);
 }
 
+const GroupEquipment* AxisGroups::equipment(GroupRef group) const noexcept {
+    return group.index < groups_.size() ? &groups_[group.index].equipment() : nullptr;
+}
+
+PlaceAnswer AxisGroups::transformed(GroupRef group, const PlaceQuestion& question) const noexcept {
+    if (group.index >= groups_.size()) return {ErrorId::invalid_group, {}, false};
+    const auto& found = groups_[group.index];
+    return axes::transformed(question, found.view(), found.equipment(), found.config().kinematics.get());
+}
+
+PlaceAnswer AxisGroups::position_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept {
+    if (group.index >= groups_.size()) return {ErrorId::invalid_group, {}, false};
+    const auto& found = groups_[group.index];
+    return axes::position_in(frame, source, found.view(), found.equipment(), found.config().kinematics.get());
+}
+
+SixAnswer AxisGroups::velocity_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept {
+    if (group.index >= groups_.size()) return {ErrorId::invalid_group, {}};
+    return axes::velocity_in(frame, source, groups_[group.index].view(), groups_[group.index].equipment());
+}
+
 GroupRef AxisGroups::group_of(AxisRef axis) const noexcept {
     for (std::size_t i = 0; i < groups_.size(); ++i)
         if (groups_[i].contains(axis)) return {static_cast<std::uint16_t>(i)};

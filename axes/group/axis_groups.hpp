@@ -38,6 +38,10 @@ public:
     ErrorId set(GroupRef group, const GroupSetting& setting, Owner owner) noexcept override;
     ErrorId reset(GroupRef group, Owner owner) noexcept override;
     void release_stop(GroupRef group, CommandId id, Owner owner) noexcept override;
+    [[nodiscard]] const GroupEquipment* equipment(GroupRef group) const noexcept override;
+    [[nodiscard]] PlaceAnswer transformed(GroupRef group, const PlaceQuestion& question) const noexcept override;
+    [[nodiscard]] PlaceAnswer position_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept override;
+    [[nodiscard]] SixAnswer velocity_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept override;
     [[nodiscard]] GroupRef group_of(AxisRef axis) const noexcept override;
 
 private:

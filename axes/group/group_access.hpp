@@ -1,6 +1,8 @@
 #pragma once
 // How programs and blocks reach groups: MotionContext::groups. Every function answers at once and is real-time safe.
 
+#include "axes/group/group_equipment.hpp"
+#include "axes/group/group_places.hpp"
 #include "axes/group/group_view.hpp"
 
 namespace taktwerk::axes {
@@ -15,6 +17,12 @@ public:
     virtual ErrorId reset(GroupRef group, Owner owner) noexcept = 0;
     /// MC_GroupStop's Execute fell.
     virtual void release_stop(GroupRef group, CommandId id, Owner owner) noexcept = 0;
+    /// Frames, tools, loads, arm; nullptr as view().
+    [[nodiscard]] virtual const GroupEquipment* equipment(GroupRef group) const noexcept = 0;
+    /// group_places.hpp; invalid_group.
+    [[nodiscard]] virtual PlaceAnswer transformed(GroupRef group, const PlaceQuestion& question) const noexcept = 0;
+    [[nodiscard]] virtual PlaceAnswer position_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept = 0;
+    [[nodiscard]] virtual SixAnswer velocity_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept = 0;
     /// Of which group the axis is a member; invalid: of none.
     [[nodiscard]] virtual GroupRef group_of(AxisRef axis) const noexcept = 0;
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "axes/axis/command.hpp"
+#include "axes/group/equipment_settings.hpp"
 #include "axes/group/group_types.hpp"
 #include "core/time.hpp"
 
@@ -27,13 +28,25 @@ enum class GroupCommandKind : std::uint8_t {
     interrupt,  ///< the commands stay, and go on with resume
     resume,     ///< MC_GroupContinue
     disable,    ///< GroupDisabled once the group stands
+    // no motion, but with a place between motions where `execution` asks for one
+    set_frame,   ///< `frame` is at `target` from then on, seen from the world
+    write_tool,  ///< `number` is `tool`
+    // at once
+    set_position,           ///< the group is at `target`
+    set_position_relative,  ///< by `target` from where it is
 };
+/// It moves nothing.
+[[nodiscard]] constexpr bool is_administrative(GroupCommandKind kind) noexcept { return kind >= GroupCommandKind::set_frame; }
+/// Of those, what may wait for its turn.
+[[nodiscard]] constexpr bool is_setting(GroupCommandKind kind) noexcept {
+    return kind == GroupCommandKind::set_frame || kind == GroupCommandKind::write_tool;
+}
 [[nodiscard]] constexpr bool goes_a_way(GroupCommandKind kind) noexcept {
     return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::direct_relative;
 }
 [[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
     return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::circular_relative ||
-           kind == GroupCommandKind::direct_relative;
+           kind == GroupCommandKind::direct_relative || kind == GroupCommandKind::set_position_relative;
 }
 [[nodiscard]] constexpr bool is_circular(GroupCommandKind kind) noexcept {
     return kind == GroupCommandKind::circular_absolute || kind == GroupCommandKind::circular_relative;
@@ -68,7 +81,11 @@ struct GroupCommand {
     CirclePins circle{};
     JointVector target{};  ///< ACS: by place. Other frames: X Y Z [u], RX RY RZ [rad]
     PathDynamics dynamics{};
+    Configuration wanted{};  ///< which way of the arm reaches a target in another frame than ACS; a path keeps the one it begins with
     Duration duration{};
+    MC_ExecutionMode execution = mcImmediately;  ///< of set_frame, write_tool
+    std::uint8_t number = 0;                     ///< of the tool
+    Tool tool{};
     const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
     friend bool operator==(const GroupCommand&, const GroupCommand&) = default;
 };
@@ -94,7 +111,8 @@ struct WriteDynamics {
     enum class Which : std::uint8_t { default_dynamics, reference_dynamics } which = Which::default_dynamics;
     PathDynamics dynamics{};
 };
-/// AddMember ... | MC_GroupSetOverride
-using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override>;
+/// AddMember ... | MC_GroupSetOverride | of tools and loads
+using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, SelectTool, SelectPayload,
+                                  WritePayload, WriteBodies>;
 
 }  // namespace taktwerk::axes

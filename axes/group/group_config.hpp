@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "axes/group/group_command.hpp"
+#include "axes/group/group_equipment.hpp"
 #include "core/result.hpp"
 
 namespace taktwerk::axes {
@@ -18,6 +18,7 @@ struct AxisGroupConfig {
     std::string name;
     std::vector<std::string> members{};              ///< in the order of their identifiers 1, 2, ...; a program may add others
     std::shared_ptr<const Kinematics> kinematics{};  ///< its joints are the members, in their order; nullptr: ACS only
+    GroupEquipment equipment{};                      ///< frames, tools, payloads at the beginning; its `arm` is filled by the group
     PathDynamics default_dynamics{};                 ///< 0 = what the axes' limits leave on a path
 };
 

@@ -35,12 +35,11 @@ struct GroupOrder {
     std::uint8_t members = 0;
     MemberVector from{};
     std::array<MemberLimits, max_path_axes> limits{};
-    Pose tool{};
 
     CommandId id = 0;
     GroupCommand command{};  ///< target by rank; dynamics resolved
     MemberVector target{};
-    Pose frame{};        ///< of a Cartesian target, seen from the machine
+    CommandPlace place{};  ///< as it was accepted
     bool joins = false;  ///< may be blended with the one before it
 
     bool stands = false;

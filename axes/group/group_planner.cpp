@@ -30,7 +30,7 @@ void GroupPlanner::restart(const GroupOrder& order) {
     runs_ = {};
     for (auto& track : link_.tracks) track.ready.store(0, std::memory_order_release);
     next_ = 0;
-    space_ = {arm_, order.tool, order.members, order.limits};
+    space_ = {arm_, order.members, order.limits};
     end_ = {order.from, {}};
     if (arm_ != nullptr) end_.configuration.branch = arm_->configuration(joints_of(order.from)).branch;
 }
@@ -72,7 +72,11 @@ void GroupPlanner::place_moves() {
 
 bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
     Run* run = last();
-    const bool joins = run != nullptr && run->open && move.joins && run->curve.seen.back().run.through_arm == shape.through_arm;
+    // Poses of another tool's point are another path: between them the arm stands.
+    const auto fits = [&](const RunSection& before) {
+        return before.through_arm == shape.through_arm && (!shape.through_arm || before.carried.tool == move.place.carried.tool);
+    };
+    const bool joins = run != nullptr && run->open && move.joins && fits(run->curve.seen.back().run);
     if (joins) {
         const std::uint32_t behind = run->curve.forgotten + static_cast<std::uint32_t>(run->curve.seen.size());
         if (behind + 2 - run->track.part.load(std::memory_order_relaxed) >= RunTrack::most_sections) return false;
@@ -141,6 +145,7 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
         corner = {};
         if (all.size() < 2 || !all[all.size() - 2].blend || all[all.size() - 2].command != move.id) return;
         corner.run.through_arm = shape.through_arm;
+        corner.run.carried = move.place.carried;
         corner.run.configuration = end_.configuration;
         corner.run.before = curve.seen[known - 1].run.section.command;
         corner.run.way = shape.element.length();
@@ -168,6 +173,7 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     if (with_corner) curve.seen.push_back(corner);
     RunCurve::Seen seen;
     seen.run.through_arm = shape.through_arm;
+    seen.run.carried = move.place.carried;
     seen.run.configuration = end_.configuration;
     seen.run.section.command = move.id;
     seen.run.corner = all.back().begin + all.back().length;

@@ -22,7 +22,7 @@ public:
 private:
     struct Run {
         Run(const MoveSpace& space, RunTrack& on, double lead)
-            : curve(space.arm, space.tool, space.members, space.limits),
+            : curve(space.arm, space.members, space.limits),
               service({curve.axis_limits().begin(), curve.axis_limits().end()}, on.exchange, lead),
               track(on) {}
         RunCurve curve;

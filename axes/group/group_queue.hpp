@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "axes/group/group_equipment.hpp"
 #include "axes/group/group_view.hpp"
 
 namespace taktwerk::axes {
@@ -13,6 +14,7 @@ struct AcceptedGroupCommand {
     CommandId id = 0;
     Owner owner = Owner::none;
     GroupCommand command;
+    CommandPlace place{};
 };
 
 class GroupQueue {
@@ -34,6 +36,12 @@ public:
     /// Only unless full().
     void push(const AcceptedGroupCommand& command) noexcept {
         ring_[(first_ + waiting_) % capacity] = command;
+        ++waiting_;
+    }
+    /// Likewise, in front of all that wait.
+    void push_front(const AcceptedGroupCommand& command) noexcept {
+        first_ = (first_ + capacity - 1) % capacity;
+        ring_[first_] = command;
         ++waiting_;
     }
     /// The next in turn becomes the active one; only when waiting() > 0.

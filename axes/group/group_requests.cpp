@@ -63,12 +63,19 @@ ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
     if (!known) return ErrorId::none;
     const auto at = here();
     if (const auto error = refuse_target(command, target_of(command, at, members_), members_); error != ErrorId::none) return error;
-    return refuse_reach(command, at, config_.kinematics.get());
+    return refuse_reach(command, place_of(command), at, config_.kinematics.get());
 }
 
 ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexcept {
-    if (command.kind == GroupCommandKind::none || command.kind > GroupCommandKind::disable) return ErrorId::invalid_parameter;
+    if (command.kind == GroupCommandKind::none || command.kind > GroupCommandKind::set_position_relative) return ErrorId::invalid_parameter;
     if (members_.owned_by_other(owner)) return ErrorId::owned_by_other;
+    if (is_administrative(command.kind) && !is_setting(command.kind)) return ErrorId::none;  // set_position() says it
+    if (is_setting(command.kind)) {
+        if (const auto error = refuse_equipment(command); error != ErrorId::none) return error;
+        if (command.execution == mcImmediately) return ErrorId::none;
+        if (state_ == GroupState::GroupStopping) return ErrorId::state_forbids;
+        return queue_.full() ? ErrorId::queue_full : ErrorId::none;
+    }
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (const auto error = check_dynamics(command.dynamics); error != ErrorId::none) return error;
     if (command.buffer_mode > mcBlendingHigh) return ErrorId::buffer_mode_not_supported;
@@ -86,6 +93,13 @@ Submitted AxisGroup::submit(const GroupCommand& command, Owner owner) noexcept {
         case GroupCommandKind::interrupt: answer.id = take_interrupt(command); break;
         case GroupCommandKind::resume: answer = take_resume(command, owner); break;
         case GroupCommandKind::disable: answer.id = take_disable(); break;
+        case GroupCommandKind::set_frame:
+        case GroupCommandKind::write_tool: answer = take_setting(command, owner); break;
+        case GroupCommandKind::set_position:
+        case GroupCommandKind::set_position_relative:
+            answer.error = set_position(command, owner);
+            if (answer.error == ErrorId::none) queue_.record(answer.id = queue_.next_id(), Outcome::done);
+            break;
         default: answer = take_motion(command, owner); break;
     }
     publish();
@@ -93,9 +107,10 @@ Submitted AxisGroup::submit(const GroupCommand& command, Owner owner) noexcept {
 }
 
 Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexcept {
+    const auto place = place_of(command);
     if (waits(command)) {
         const auto id = queue_.next_id();
-        queue_.push({id, owner, command});
+        queue_.push({id, owner, command, place});
         return {id, ErrorId::none};
     }
     const bool stands = !members_.led();
@@ -115,7 +130,7 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
         run_.stop(command.dynamics, view_.override_factors);
     }
     const auto id = queue_.next_id();
-    queue_.activate({id, owner, command});
+    queue_.activate({id, owner, command, place});
     fire(GroupEvent::motion);
     return {id, ErrorId::none};
 }
@@ -123,7 +138,7 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
 CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcept {
     abort_all();
     lock_ = queue_.next_id();
-    queue_.activate({lock_, owner, command});
+    queue_.activate({lock_, owner, command, {}});
     begun_ = true;
     fire(GroupEvent::stop);
     if (members_.led()) run_.stop(command.dynamics, Override{});
@@ -262,6 +277,8 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         put(kept.acceleration, written->dynamics.acceleration);
         put(kept.deceleration, written->dynamics.deceleration);
         put(kept.jerk, written->dynamics.jerk);
+    } else if (setting.index() >= GroupSetting{SelectTool{}}.index()) {
+        error = equip(setting);
     } else {
         error = change_members(setting);
     }

@@ -21,8 +21,14 @@ enum class GroupState : std::uint8_t { GroupDisabled, GroupStandby, GroupHoming,
 inline constexpr std::size_t group_state_count = 6;
 [[nodiscard]] std::string_view name(GroupState state) noexcept;
 
-/// In which coordinates a position is meant: the axes themselves, the machine, the world, a product, flange or fixture, the tool.
-enum MC_CoordSystem : std::uint8_t { mcACS, mcMCS, mcWCS, mcPCS, mcFCS, mcTCS };
+/// In which coordinates a position is meant: the axes themselves, the machine, the world, a product (eight of them; mcPCS is the first), flange or
+/// fixture, the tool.
+enum MC_CoordSystem : std::uint8_t { mcACS, mcMCS, mcWCS, mcPCS, mcFCS, mcTCS, mcPCS_2, mcPCS_3, mcPCS_4, mcPCS_5, mcPCS_6, mcPCS_7, mcPCS_8 };
+inline constexpr MC_CoordSystem mcPCS_1 = mcPCS;
+inline constexpr std::size_t product_frames = 8;
+[[nodiscard]] constexpr bool is_product(MC_CoordSystem frame) noexcept { return frame == mcPCS || (frame >= mcPCS_2 && frame <= mcPCS_8); }
+/// From 0 on; only of products.
+[[nodiscard]] constexpr std::size_t product_index(MC_CoordSystem frame) noexcept { return frame == mcPCS ? 0 : frame - mcPCS_2 + 1u; }
 /// The curve at a joint of two motions.
 enum MC_TransitionMode : std::uint8_t { mcTMNone, mcTMStartVelocity, mcTMConstantVelocity, mcTMCornerDistance, mcTMMaxCornerDeviation };
 /// v2.0: how fast that joint is passed.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "axes/group/move_shape.hpp"
+#include "axes/group/written_pose.hpp"
 #include "axes/kinematics/kinematics.hpp"
 
 namespace taktwerk::axes {
@@ -16,9 +16,9 @@ bool has_all_joints(const Kinematics* arm, const GroupMembers& members) noexcept
 
 ErrorId refuse_frame(const GroupCommand& command, const Kinematics* arm, const GroupMembers& members) noexcept {
     if (command.frame == mcACS) return is_circular(command.kind) ? ErrorId::no_kinematics : ErrorId::none;
-    if (command.frame > mcTCS) return ErrorId::invalid_parameter;
+    if (command.frame > mcPCS_8) return ErrorId::invalid_parameter;
     if (!has_all_joints(arm, members)) return ErrorId::no_kinematics;
-    return command.frame == mcMCS ? ErrorId::none : ErrorId::not_supported;
+    return command.frame == mcFCS ? ErrorId::not_supported : ErrorId::none;
 }
 
 JointVector target_of(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept {
@@ -29,11 +29,11 @@ JointVector target_of(const GroupCommand& command, const JointVector& here, cons
     return target;
 }
 
-ErrorId refuse_reach(const GroupCommand& command, const JointVector& here, const Kinematics* arm) noexcept {
-    if (command.frame == mcACS || is_relative(command.kind)) return ErrorId::none;
+ErrorId refuse_reach(const GroupCommand& command, const CommandPlace& place, const JointVector& here, const Kinematics* arm) noexcept {
+    if (command.frame == mcACS || command.frame == mcTCS || is_relative(command.kind)) return ErrorId::none;
     Joints near{};
     for (std::size_t i = 0; i < max_joints; ++i) near[i] = here[i];
-    const auto stand = arm->inverse(pose_of_six(command.target), {}, {}, near);
+    const auto stand = arm->inverse(seen_through(place.frame, pose_of_six(command.target)), place.carried.tool, command.wanted, near);
     if (stand.ok()) return ErrorId::none;
     return stand.miss.fault == KinematicFault::joint_limit ? ErrorId::beyond_software_limit : ErrorId::out_of_reach;
 }

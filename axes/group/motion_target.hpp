@@ -1,7 +1,7 @@
 #pragma once
 // What a command's position means for the members, and whether they may go there, as far as that is known without the whole way. Pure, real-time safe.
 
-#include "axes/group/group_command.hpp"
+#include "axes/group/group_equipment.hpp"
 #include "axes/group/group_members.hpp"
 
 namespace taktwerk::axes {
@@ -18,7 +18,8 @@ class Kinematics;
 [[nodiscard]] JointVector target_of(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept;
 
 /// Whether the arm reaches an absolute position, whichever way it stands then: out_of_reach, beyond_software_limit.
-[[nodiscard]] ErrorId refuse_reach(const GroupCommand& command, const JointVector& here, const Kinematics* arm) noexcept;
+[[nodiscard]] ErrorId refuse_reach(const GroupCommand& command, const CommandPlace& place, const JointVector& here,
+                                   const Kinematics* arm) noexcept;
 
 /// It is there already: in ACS.
 [[nodiscard]] bool goes_nowhere(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept;

@@ -11,8 +11,6 @@
 namespace taktwerk::axes {
 namespace {
 
-/// Nearer to a singularity than this a path is refused: 1 / measure says how fast a joint has to be.
-constexpr double least_measure = 0.01;
 /// Length of a radian of orientation: pose paths count turns in it.
 constexpr double turn_lever = 1;
 
@@ -68,25 +66,29 @@ MoveShape joint_line(const MemberVector& to, const MoveEnd& from, const MoveSpac
     return shape;
 }
 
+/// The command's frame; TCS is the tool's as the move before leaves it (G-075).
+Pose frame_of(const GroupOrder& move, const Pose& start) noexcept { return move.command.frame == mcTCS ? start : move.place.frame; }
+
 Pose goal_of(const GroupOrder& move, const Pose& start) noexcept {
+    const Pose frame_pose = frame_of(move, start);
     const Pose given = pose_of_six(move.command.target);
-    if (!is_relative(move.command.kind)) return composed(move.frame, given);
+    if (!is_relative(move.command.kind)) return composed(frame_pose, given);
     // A distance in the directions of its frame; its turns are about the tool's point, in the frame's directions too.
-    const Eigen::Quaterniond frame = orientation_of(move.frame);
+    const Eigen::Quaterniond frame = orientation_of(frame_pose);
     const Eigen::Quaterniond turn = frame * orientation_of(given) * frame.conjugate();
     return pose_of(position_of(start) + frame * position_of(given), turn * orientation_of(start));
 }
 
 Eigen::Vector3d seen_in(const GroupOrder& move, const Pose& start, const std::array<double, 3>& point) noexcept {
     const Eigen::Vector3d p(point[0], point[1], point[2]);
-    if (is_relative(move.command.kind)) return position_of(start) + orientation_of(move.frame) * p;
-    return position_of(move.frame) + orientation_of(move.frame) * p;
+    const Pose frame = frame_of(move, start);
+    return position_of(is_relative(move.command.kind) ? start : frame) + orientation_of(frame) * p;
 }
 
 Result<PathElement> arc_of(const GroupOrder& move, const Pose& start, const PathVector& from, const PathVector& to) {
     const auto& circle = move.command.circle;
     const auto sense = circle.clockwise ? ArcSense::clockwise : ArcSense::counter_clockwise;
-    const Eigen::Quaterniond frame = orientation_of(move.frame);
+    const Eigen::Quaterniond frame = orientation_of(frame_of(move, start));
     const Eigen::Vector3d aux(circle.aux[0], circle.aux[1], circle.aux[2]);
     switch (circle.mode) {
         case mcBORDER: return arc_over_border(from, seen_in(move, start, circle.aux), to);
@@ -99,22 +101,23 @@ Result<PathElement> arc_of(const GroupOrder& move, const Pose& start, const Path
 }
 
 /// Everywhere along it: reached by the same way of the arm, inside the limits, not singular.
-void walk(MoveShape& shape, const MoveEnd& from, const MoveSpace& space) {
+void walk(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space) {
     PathSection whole;
     whole.element = shape.element;
     whole.chart = shape.chart;
     whole.length = shape.element.length();
     RunSection run;
     run.through_arm = true;
+    run.carried = carried;
     run.configuration = from.configuration;
     constexpr int least = 64, most = 2048;
     const double size = std::max(shape.element.feature(whole.length / 2) / 2, whole.length / most);
     const int steps = std::clamp(static_cast<int>(std::min(whole.length / size, 1.0 * most)), least, most);
     MemberVector near = from.members;
     for (int i = 0; i <= steps; ++i) {
-        const WayPoint w = way_point(whole, run, whole.length * i / steps, space.arm, space.tool, space.members, near);
+        const WayPoint w = way_point(whole, run, whole.length * i / steps, space.arm, space.members, near);
         shape.error = error_of(w.miss);
-        if (shape.error == ErrorId::none && space.arm->singularity(joints_of(w.q)).measure < least_measure)
+        if (shape.error == ErrorId::none && space.arm->singularity(joints_of(w.q)).measure < least_singularity)
             shape.error = ErrorId::singular_path;
         if (shape.error == ErrorId::none) shape.error = within(w.q, space);
         if (shape.error != ErrorId::none) return;
@@ -124,18 +127,6 @@ void walk(MoveShape& shape, const MoveEnd& from, const MoveSpace& space) {
 }
 
 }  // namespace
-
-Pose pose_of_turns(const std::array<double, 3>& place, const std::array<double, 3>& turns) noexcept {
-    return pose_of_six({place[0], place[1], place[2], turns[0], turns[1], turns[2]});
-}
-
-Pose pose_of_six(const JointVector& six) noexcept {
-    using Eigen::AngleAxisd;
-    using Eigen::Vector3d;
-    const Eigen::Quaterniond turn =
-        AngleAxisd(six[5], Vector3d::UnitZ()) * AngleAxisd(six[4], Vector3d::UnitY()) * AngleAxisd(six[3], Vector3d::UnitX());
-    return pose_of(Vector3d(six[0], six[1], six[2]), turn);
-}
 
 MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
     const auto kind = move.command.kind;
@@ -147,10 +138,15 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
         return joint_line(to, from, space);
     }
     if (space.arm == nullptr) return refused(ErrorId::no_kinematics);
-    const ForwardResult here = space.arm->forward(joints_of(from.members), space.tool);
+    const Pose& tool = move.place.carried.tool;
+    const ForwardResult here = space.arm->forward(joints_of(from.members), tool);
     if (!here.miss.ok()) return refused(error_of(here.miss));
     const Pose start = here.pose, goal = goal_of(move, start);
-    const AxisSolution there = space.arm->inverse(goal, space.tool, direct ? Configuration{} : from.configuration, joints_of(from.members));
+    // A path keeps the way the arm stands (G-042): one that is told to end otherwise is none.
+    const auto& wanted = move.command.wanted;
+    if (!direct && !answers(from.configuration.branch, wanted.branch)) return refused(ErrorId::out_of_reach);
+    Configuration asked = direct ? wanted : from.configuration;
+    const AxisSolution there = space.arm->inverse(goal, tool, asked, joints_of(from.members));
     if (!there.ok()) return refused(error_of(there.miss));
     if (direct) return joint_line(members_of(there.axes), from, space);
 
@@ -174,7 +170,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
         if (shape.empty) return shape;
         shape.element = PathElement::line(a, b);
     }
-    walk(shape, from, space);
+    walk(shape, move.place.carried, from, space);
     return shape;
 }
 
@@ -182,9 +178,9 @@ ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveE
     if (!at.through_arm) return ErrorId::none;  // between two lines inside the limits it is inside
     constexpr int steps = 16;
     for (int i = 0; i <= steps; ++i) {
-        const WayPoint w = way_point(blend, at, blend.begin + blend.length * i / steps, space.arm, space.tool, space.members, near.members);
+        const WayPoint w = way_point(blend, at, blend.begin + blend.length * i / steps, space.arm, space.members, near.members);
         if (const auto error = error_of(w.miss); error != ErrorId::none) return error;
-        if (space.arm->singularity(joints_of(w.q)).measure < least_measure) return ErrorId::singular_path;
+        if (space.arm->singularity(joints_of(w.q)).measure < least_singularity) return ErrorId::singular_path;
         if (const auto error = within(w.q, space); error != ErrorId::none) return error;
     }
     return ErrorId::none;

@@ -26,7 +26,6 @@ struct MoveShape {
 
 struct MoveSpace {
     const Kinematics* arm = nullptr;
-    Pose tool{};
     std::size_t members = 0;
     std::array<MemberLimits, max_path_axes> limits{};
 };
@@ -36,8 +35,5 @@ struct MoveSpace {
 
 /// A blend's points, likewise. none: it can be gone.
 [[nodiscard]] ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveEnd& near, const MoveSpace& space);
-
-/// An orientation as MC_CART_REF has it: turns about z, then the new y, then the new x, rad; as a pose.
-[[nodiscard]] Pose pose_of_six(const JointVector& six) noexcept;
 
 }  // namespace taktwerk::axes

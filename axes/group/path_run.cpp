@@ -52,7 +52,6 @@ struct PathRun::Inside {
     std::array<std::uint8_t, max_path_axes> places{};
     std::array<MemberLimits, max_path_axes> limits{};
     std::size_t members = 0;
-    Pose tool{};
     MemberVector q{}, velocity{}, acceleration{};
     WayPoint at;
     std::array<GroupVerdict, 32> verdicts{};
@@ -99,7 +98,6 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors) noex
     in.link.at_run.store(GroupLink::both(in.life, 0), std::memory_order_release);
     in.members = count;
     in.limits = order.limits;
-    in.tool = order.tool;
     in.q = order.from;
     in.wish = order;
     in.told = true;
@@ -107,7 +105,8 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors) noex
     return true;
 }
 
-bool PathRun::send(CommandId id, const GroupCommand& command, const PathDynamics& dynamics, bool joins) noexcept {
+bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics,
+                   bool joins) noexcept {
     auto& in = *inside_;
     GroupOrder order;
     order.kind = GroupOrder::Kind::move;
@@ -116,6 +115,7 @@ bool PathRun::send(CommandId id, const GroupCommand& command, const PathDynamics
     order.command = command;
     order.command.dynamics = dynamics;
     for (std::size_t k = 0; k < in.members; ++k) order.target[k] = command.target[in.places[k]];
+    order.place = place;
     order.joins = joins;
     return in.link.orders.try_push(order);
 }
@@ -221,6 +221,7 @@ void PathRun::look() noexcept {
     if (run.section.command == 0) return;  // it stands in front of the first stretch
     const bool before = run.section.blend && s < run.section.begin + run.section.length / 2;
     command_ = before ? run.before : run.section.command;
+    carried_ = run.carried;
     arrived_ = in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
     length_ = before ? run.section.length / 2 : run.way;
     remaining_ = before              ? run.section.begin + run.section.length / 2 - s
@@ -232,7 +233,7 @@ void PathRun::look() noexcept {
         in.q = run.to;
         in.velocity = in.acceleration = {};
     } else {
-        in.at = way_point(run.section, run, s, in.arm.get(), in.tool, in.members, in.q);
+        in.at = way_point(run.section, run, s, in.arm.get(), in.members, in.q);
         if (!in.at.miss.ok()) {
             fault_ = ErrorId::out_of_reach;
             return;

@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-#include "axes/group/group_command.hpp"
+#include "axes/group/group_equipment.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_view.hpp"
 #include "axes/planner/motion.hpp"
@@ -19,7 +19,6 @@
 namespace taktwerk::axes {
 
 class Kinematics;
-struct Pose;
 
 class PathRun {
 public:
@@ -34,7 +33,7 @@ public:
     bool restart(const GroupMembers& members, const Override& factors) noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
     /// False: not now.
-    bool send(CommandId id, const GroupCommand& command, const PathDynamics& dynamics, bool joins) noexcept;
+    bool send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins) noexcept;
     /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
     [[nodiscard]] std::optional<ErrorId> verdict(CommandId id) noexcept;
     /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
@@ -67,6 +66,8 @@ public:
     [[nodiscard]] CommandId command() const noexcept { return command_; }
     [[nodiscard]] const MotionState& along() const noexcept { return s_; }
     [[nodiscard]] MotionState of(std::size_t place) const noexcept { return states_[place]; }
+    /// With what that is gone; only while command() is not 0.
+    [[nodiscard]] const CarriedTool& carried() const noexcept { return carried_; }
     /// Where the way of command() ends.
     [[nodiscard]] const JointVector& end() const noexcept { return end_; }
     [[nodiscard]] double length() const noexcept { return length_; }
@@ -89,6 +90,7 @@ private:
     JointVector end_{};
     MotionState s_;
     CommandId command_ = 0;
+    CarriedTool carried_{};
     double length_ = 0, remaining_ = 0;
     bool exists_ = false, arrived_ = false;
     bool stops_ = false;  // the goal is rest, not the end

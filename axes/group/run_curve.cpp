@@ -15,8 +15,7 @@ double said(double value) noexcept { return value > 0 ? value : infinite; }
 
 }  // namespace
 
-RunCurve::RunCurve(const Kinematics* arm, const Pose& tool, std::size_t members, std::span<const MemberLimits> limits)
-    : arm_(arm), tool_(tool) {
+RunCurve::RunCurve(const Kinematics* arm, std::size_t members, std::span<const MemberLimits> limits) : arm_(arm) {
     for (std::size_t i = 0; i < members; ++i) limits_.push_back({limits[i].velocity, limits[i].acceleration, jerk_share * limits[i].jerk});
 }
 
@@ -51,7 +50,7 @@ const MemberVector& RunCurve::near(std::size_t i, double s) const noexcept {
 
 WayPoint RunCurve::place(std::size_t i, double s) const noexcept {
     const RunSection& run = seen[i].run;
-    return way_point(path.sections()[i], run, s, arm_, tool_, limits_.size(), run.through_arm ? near(i, s) : MemberVector{});
+    return way_point(path.sections()[i], run, s, arm_, limits_.size(), run.through_arm ? near(i, s) : MemberVector{});
 }
 
 TimedCurvePoint RunCurve::on(std::size_t i, double s) const noexcept {

@@ -12,7 +12,7 @@ namespace taktwerk::axes {
 
 class RunCurve final : public TimedCurve {
 public:
-    RunCurve(const Kinematics* arm, const Pose& tool, std::size_t members, std::span<const MemberLimits> limits);
+    RunCurve(const Kinematics* arm, std::size_t members, std::span<const MemberLimits> limits);
 
     /// What the planner keeps of a section beside the path's own.
     struct Seen {
@@ -52,7 +52,6 @@ private:
     [[nodiscard]] TimedCurvePoint on(std::size_t index, double s) const noexcept;
 
     const Kinematics* arm_;
-    Pose tool_;
     std::vector<PathAxisLimits> limits_;
     bool stands_ = false;
     Override factors_{};

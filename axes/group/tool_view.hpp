@@ -6,8 +6,9 @@
 namespace taktwerk::axes {
 
 class Kinematics;
+struct Pose;
 
-/// Fills what the view has of the tool; of a group without all joints of its arm nothing is known.
-void see_tool(GroupView& view, const Kinematics* arm) noexcept;
+/// Fills what the view has of the tool, whose point `tool` is seen from the flange; of a group without all joints of its arm nothing is known.
+void see_tool(GroupView& view, const Kinematics* arm, const Pose& tool) noexcept;
 
 }  // namespace taktwerk::axes

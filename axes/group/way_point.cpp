@@ -7,8 +7,9 @@ namespace {
 
 std::array<double, 3> numbers(const Eigen::Vector3d& v) noexcept { return {v.x(), v.y(), v.z()}; }
 
-void through(WayPoint& w, const PathSection& section, const RunSection& at, const PathPoint& point, const Kinematics& arm, const Pose& tool,
+void through(WayPoint& w, const PathSection& section, const RunSection& at, const PathPoint& point, const Kinematics& arm,
              const MemberVector& near) noexcept {
+    const Pose& tool = at.carried.tool;
     const PosePoint pose = pose_point(point, section.chart);
     const AxisSolution stand = arm.inverse(pose_of(pose.position, pose.orientation), tool, at.configuration, joints_of(near));
     w.miss = stand.miss;
@@ -28,12 +29,12 @@ void through(WayPoint& w, const PathSection& section, const RunSection& at, cons
 
 }  // namespace
 
-WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, const Pose& tool, std::size_t members,
+WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, std::size_t members,
                    const MemberVector& near) noexcept {
     WayPoint w;
     const PathPoint point = section.at(s);
     if (at.through_arm) {
-        through(w, section, at, point, *arm, tool, near);
+        through(w, section, at, point, *arm, near);
         return w;
     }
     for (std::size_t i = 0; i < members; ++i) {

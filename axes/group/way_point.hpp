@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "axes/group/group_equipment.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "axes/path/path.hpp"
 #include "axes/path_time/curve.hpp"
@@ -18,6 +19,7 @@ using MemberVector = std::array<double, max_path_axes>;
 struct RunSection {
     PathSection section;
     bool through_arm = false;     ///< its points are poses; else they are the members themselves
+    CarriedTool carried{};        ///< of whose point they are poses
     Configuration configuration;  ///< which way of the arm holds along it
     std::uint32_t before = 0;     ///< of a blend: the command that it comes from
     double corner = 0;            ///< s at which its command ends, were it not blended
@@ -32,8 +34,8 @@ struct WayPoint {
 };
 
 /// `near`: the members close by, by which turns and free joints are chosen.
-[[nodiscard]] WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, const Pose& tool,
-                                 std::size_t members, const MemberVector& near) noexcept;
+[[nodiscard]] WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, std::size_t members,
+                                 const MemberVector& near) noexcept;
 
 [[nodiscard]] inline Joints joints_of(const MemberVector& members) noexcept {
     Joints joints{};

@@ -51,6 +51,16 @@ JointChain chain_of(const DhTable& table, DhConvention convention) noexcept {
     return chain;
 }
 
+DhTable table_of(const WristArmLengths& l) noexcept {
+    constexpr double q = right_angle;
+    return {{{.a = l.a1, .alpha = -q, .d = l.c1, .theta = 0},
+             {.a = l.c2, .alpha = 0, .d = l.b, .theta = -q},
+             {.a = l.a2, .alpha = q, .d = 0, .theta = q},
+             {.a = 0, .alpha = -q, .d = l.c3, .theta = 0},
+             {.a = 0, .alpha = q, .d = 0, .theta = 0},
+             {.a = 0, .alpha = 0, .d = l.c4, .theta = 0}}};
+}
+
 JointChain deviated(const JointChain& chain, const LinkDeviations& by) noexcept {
     JointChain real = chain;
     for (std::size_t i = 0; i < 6; ++i) {

@@ -48,6 +48,8 @@ using LinkDeviations = std::array<LinkDeviation, 6>;
 
 [[nodiscard]] JointChain chain_of(const WristArmLengths& lengths) noexcept;
 [[nodiscard]] JointChain chain_of(const DhTable& table, DhConvention convention) noexcept;
+/// The same chain in the classic convention.
+[[nodiscard]] DhTable table_of(const WristArmLengths& lengths) noexcept;
 [[nodiscard]] JointChain deviated(const JointChain& chain, const LinkDeviations& by) noexcept;
 
 }  // namespace taktwerk::axes

@@ -27,10 +27,10 @@ struct Branch {
     friend bool operator==(const Branch&, const Branch&) = default;
 };
 
-/// Does `found` do for somebody who wants `wanted`? Its flags that are `any` do not matter.
+/// Does `found` do for somebody who wants `wanted`? Flags that are `any` in one of them do not matter: nobody asks, or the arm has no such choice.
 [[nodiscard]] constexpr bool answers(const Branch& found, const Branch& wanted) noexcept {
-    return (wanted.shoulder == Shoulder::any || wanted.shoulder == found.shoulder) &&
-           (wanted.elbow == Elbow::any || wanted.elbow == found.elbow) && (wanted.wrist == Wrist::any || wanted.wrist == found.wrist);
+    const auto agree = [](auto asked, auto is) { return static_cast<int>(asked) == 0 || static_cast<int>(is) == 0 || asked == is; };
+    return agree(wanted.shoulder, found.shoulder) && agree(wanted.elbow, found.elbow) && agree(wanted.wrist, found.wrist);
 }
 
 /// Which turn a rotary joint stands in: 0 for (-180, 180] degrees, 1 for (180, 540], -1 for (-540, -180].

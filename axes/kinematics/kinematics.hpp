@@ -6,6 +6,8 @@
 // a command keeps the one that it was given with. Axes are what drives are told, each in its own unit; joints are the arm's, in rad and the
 // unit of length (axis_map.hpp).
 
+#include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "axes/kinematics/description.hpp"
@@ -83,6 +85,11 @@ public:
 
     [[nodiscard]] const AxisMap& map() const noexcept { return map_; }
     [[nodiscard]] const Pose& base() const noexcept { return base_pose_; }
+    /// Which of ArmDescription's kinds it was made of: its index.
+    [[nodiscard]] std::uint8_t kind() const noexcept { return kind_; }
+    /// Denavit and Hartenberg's table of the nominal arm, joints as the arm counts them: as written, or what its lengths are (classic). Of six
+    /// joints only.
+    [[nodiscard]] const std::optional<SixJoints::Table>& rows() const noexcept { return rows_; }
     /// Is each inverse a closed form? False: Newton's method ends it.
     [[nodiscard]] bool closed_form() const noexcept;
 
@@ -103,6 +110,8 @@ private:
     double reach_ = 1;
     std::size_t joint_count_ = 0;
     std::array<bool, max_joints> rotary_{};
+    std::uint8_t kind_ = 0;
+    std::optional<SixJoints::Table> rows_;
 };
 
 }  // namespace taktwerk::axes

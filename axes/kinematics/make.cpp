@@ -154,6 +154,12 @@ Result<Kinematics> Kinematics::make(const KinematicsDescription& description) {
         coupling = with_belt(description.coupling);
     }
 
+    k.kind_ = static_cast<std::uint8_t>(description.arm.index());
+    if (const auto* six = std::get_if<SixJoints>(&description.arm)) {
+        const auto* table = std::get_if<SixJoints::Table>(&six->geometry);
+        k.rows_ = table != nullptr ? *table : SixJoints::Table{table_of(std::get<WristArmLengths>(six->geometry)), DhConvention::classic};
+    }
+
     k.joint_count_ = std::visit([](const auto& arm) { return arm.joint_count(); }, k.arm_);
     k.rotary_ = std::visit([](const auto& arm) { return arm.rotary(); }, k.arm_);
     if (const auto* six = std::get_if<SixArm>(&k.arm_); six != nullptr && !six->sound())

@@ -9,17 +9,17 @@
 namespace taktwerk::axes {
 
 /// A rigid body, in the frame of the tool's point (TCP). kg, the machine's unit of length. No set-point depends on it: what loads a drive
-/// may carry is the drive's feed-forward's matter.
+/// may carry is the drive's feed-forward's matter. Numbers stay as they were written, so that who reads them finds them.
 struct RigidBody {
     double mass = 0;
-    Pose centre{};                    ///< centre of gravity, and the directions of the principal axes
+    SixNumbers centre{};              ///< centre of gravity, and the directions of the principal axes
     std::array<double, 3> inertia{};  ///< about the principal axes through the centre
 
     friend bool operator==(const RigidBody&, const RigidBody&) = default;
 };
 
 struct Tool {
-    Pose frame{};  ///< the tool's point and directions, seen from the flange
+    SixNumbers frame{};  ///< the tool's point and directions, seen from the flange
     RigidBody body{};
 
     friend bool operator==(const Tool&, const Tool&) = default;

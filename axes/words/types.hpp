@@ -44,7 +44,8 @@ enum MC_StartMode : std::uint8_t { mcAbsolute, mcRelative, mcRampIn };
 /// Which way MC_GearInPos gets to its sync point on a modulo slave: the nearest repetition, ahead, or waiting for the next.
 enum MC_SyncMode : std::uint8_t { mcShortest, mcCatchUp, mcSlowDown };
 enum MC_CombineMode : std::uint8_t { mcAddAxes, mcSubAxes };
-enum MC_ExecutionMode : std::uint8_t { mcImmediately, mcQueued };
+/// At once; after all commands that wait; of groups (Part 4) also after the running one.
+enum MC_ExecutionMode : std::uint8_t { mcImmediately, mcQueued, mcDelayed };
 
 /// PLCopen Part 5: the way a search begins. The last two go by the switch: off, as named; on, the other way.
 enum class MC_HomeDirection : std::uint8_t { mcPositiveDirection, mcNegativeDirection, mcSwitchPositive, mcSwitchNegative };
@@ -157,7 +158,8 @@ enum class ErrorId : std::uint16_t {
     invalid_arc = 0x0047,          ///< the points of an arc make none
     half_turn = 0x0048,            ///< the tool shall turn by half a turn, and nothing says which way round
     path_not_planned = 0x0049,     ///< no motion along the path was found within all limits
+    invalid_tool = 0x004A,         ///< no tool or payload of this number is defined; 0 cannot be written
 };
-inline constexpr std::size_t error_id_count = 0x004A;
+inline constexpr std::size_t error_id_count = 0x004B;
 
 }  // namespace taktwerk::axes

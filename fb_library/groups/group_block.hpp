@@ -3,7 +3,7 @@
 //
 //   GroupCommandBlock  a command of the group. Says `GroupCommand command() const`; `completion` where it is not plain Done.
 //   GroupSettingBlock  something at once. Says `GroupSetting setting() const`; Done in the next call.
-//   GroupReadBlock     while Enable is TRUE. Says, public, `Reading read_group(const GroupView&)` and `clear()`.
+//   GroupReadBlock     while Enable is TRUE. Says, public, `Reading read_group(const GroupView&)` (or with the context in front) and `clear()`.
 
 #include <cstdint>
 
@@ -73,7 +73,9 @@ struct GroupReadBlock : EnableBlock<Block> {
     [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
         Block& block = static_cast<Block&>(*this);
         const axes::GroupView* view = view_of(ctx, block.AxesGroup);
-        return view != nullptr ? block.read_group(*view) : Reading::unless(ErrorId::invalid_group);
+        if (view == nullptr) return Reading::unless(ErrorId::invalid_group);
+        if constexpr (requires { block.read_group(ctx, *view); }) return block.read_group(ctx, *view);
+        else return block.read_group(*view);
     }
 };
 

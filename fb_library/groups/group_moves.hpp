@@ -18,6 +18,7 @@ template <class Block>
     if (block.BufferMode == mcBuffered && block.TransitionVelocity != mcTVZero)
         command.buffer_mode = static_cast<MC_BufferMode>(mcBlendingLow + (block.TransitionVelocity - mcTVLow));
     if constexpr (requires { block.OrientationMode; }) command.orientation = block.OrientationMode;
+    command.wanted = detail::wanted_by(place);
     const auto& tcp = place.C.Tcp;
     if (block.CoordSystem == mcACS) command.target = place.A.Axes;
     else command.target = {tcp.X, tcp.Y, tcp.Z, tcp.RX, tcp.RY, tcp.RZ};

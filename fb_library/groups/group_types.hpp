@@ -15,6 +15,7 @@ using axes::GroupRef;
 
 using axes::MC_CoordSystem;
 using enum axes::MC_CoordSystem;
+using axes::mcPCS_1;
 using axes::MC_TransitionMode;
 using enum axes::MC_TransitionMode;
 using axes::MC_TransitionVelocity;
@@ -54,10 +55,12 @@ struct GroupNumber {
 struct MC_CART_REF {
     double X = 0, Y = 0, Z = 0, RX = 0, RY = 0, RZ = 0;
 };
-/// Which way of an arm to reach it.
+/// Which way of an arm to reach it: with ConfigValid; else the one that is nearest. TRUE: in front, elbow up, wrist not flipped. Of an arm
+/// without such a choice a flag means nothing.
 struct MC_CONFIG_DATA {
     bool ConfigValid = false, Shoulder = false, Elbow = false, Wrist = false;
 };
+/// Which turn each rotary joint stands in, with ConfigValid: 0 for (-180, 180] degrees, 1 for (180, 540], ...
 struct MC_TURN_INFO {
     std::array<std::int8_t, axes::most_members> ATurns{};
 };
@@ -93,7 +96,8 @@ struct MC_GROUP_SWLIMITS {
 enum MC_CommandState : std::uint8_t { mcAccepted, mcActive };
 
 namespace detail {
-inline constexpr std::array<std::string_view, 6> coord_system_names{"mcACS", "mcMCS", "mcWCS", "mcPCS", "mcFCS", "mcTCS"};
+inline constexpr std::array<std::string_view, 13> coord_system_names{"mcACS",   "mcMCS",   "mcWCS",   "mcPCS",   "mcFCS",   "mcTCS",  "mcPCS_2",
+                                                                     "mcPCS_3", "mcPCS_4", "mcPCS_5", "mcPCS_6", "mcPCS_7", "mcPCS_8"};
 inline constexpr std::array<std::string_view, 5> transition_mode_names{"mcTMNone", "mcTMStartVelocity", "mcTMConstantVelocity",
                                                                        "mcTMCornerDistance", "mcTMMaxCornerDeviation"};
 inline constexpr std::array<std::string_view, 5> transition_velocity_names{"mcTVZero", "mcTVLow", "mcTVPrevious", "mcTVNext", "mcTVHigh"};
@@ -122,6 +126,21 @@ template <> struct PinTypeOf<MC_CIRC_MODE> { static constexpr PinType value{PinK
 template <> struct PinTypeOf<MC_CIRC_PATHCHOICE> { static constexpr PinType value{PinKind::ENUM, "MC_CIRC_PATHCHOICE", detail::circ_path_choice_names}; };
 template <> struct PinTypeOf<MC_CommandState> { static constexpr PinType value{PinKind::ENUM, "MC_COMMAND_STATE", detail::command_state_names}; };
 // clang-format on
+
+namespace detail {
+
+/// What a position says of how the arm shall stand.
+[[nodiscard]] constexpr axes::Configuration wanted_by(const MC_POS_REF& position) noexcept {
+    axes::Configuration c;
+    const auto& cfg = position.C.Cfg;
+    if (!cfg.ConfigValid) return c;
+    c.branch = {cfg.Shoulder ? axes::Shoulder::front : axes::Shoulder::back, cfg.Elbow ? axes::Elbow::up : axes::Elbow::down,
+                cfg.Wrist ? axes::Wrist::no_flip : axes::Wrist::flip};
+    for (std::size_t i = 0; i < axes::max_joints; ++i) c.turns[i] = position.C.TurnInfo.ATurns[i];
+    return c;
+}
+
+}  // namespace detail
 
 /// The view of a group; nullptr for an invalid handle, and where no groups are seen.
 [[nodiscard]] inline const axes::GroupView* view_of(const MotionContext& ctx, GroupRef group) noexcept {

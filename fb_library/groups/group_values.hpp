@@ -5,30 +5,15 @@
 #include <cmath>
 #include <string_view>
 
+#include "fb_library/groups/group_arm_blocks.hpp"
 #include "fb_library/groups/group_block.hpp"
 
 namespace taktwerk::fb {
 
 namespace detail {
 
-/// Whether values of the axes are values of this frame too: no_kinematics, not_supported.
-[[nodiscard]] constexpr ErrorId refuse_frame(const axes::GroupView& view, MC_CoordSystem frame) noexcept {
-    if (frame == mcACS) return ErrorId::none;
-    if (!view.kinematics) return ErrorId::no_kinematics;
-    if (!view.tool_known) return ErrorId::out_of_reach;
-    return frame == mcMCS ? ErrorId::none : ErrorId::not_supported;
-}
-[[nodiscard]] inline MC_POS_REF place_of(const AxisValues& values, const std::array<double, 6>& tool, MC_CoordSystem frame) noexcept {
-    MC_POS_REF place;
-    if (frame == mcACS) place.A.Axes = values;
-    else place.C.Tcp = {tool[0], tool[1], tool[2], tool[3], tool[4], tool[5]};
-    return place;
-}
 /// v1.0 has one array for both: of the tool X, Y, Z, RX, RY, RZ.
-[[nodiscard]] inline AxisValues values_of(const AxisValues& values, const std::array<double, 6>& tool, MC_CoordSystem frame) noexcept {
-    if (frame == mcACS) return values;
-    return {tool[0], tool[1], tool[2], tool[3], tool[4], tool[5]};
-}
+[[nodiscard]] inline AxisValues values_of(const axes::SixNumbers& six) noexcept { return {six[0], six[1], six[2], six[3], six[4], six[5]}; }
 [[nodiscard]] inline double norm(const AxisValues& values) noexcept {
     double sum = 0;
     for (const double value : values) sum += value * value;
@@ -38,6 +23,18 @@ namespace detail {
 /// Of the axes; in other frames of the tool's point, whose turns do not count.
 [[nodiscard]] inline double path_norm(const AxisValues& values, MC_CoordSystem frame) noexcept {
     return frame == mcACS ? norm(values) : norm({values[0], values[1], values[2]});
+}
+
+[[nodiscard]] inline ErrorId velocity_into(AxisValues& velocity, const MotionContext& ctx, const axes::GroupView& view, GroupRef group,
+                                           MC_CoordSystem frame, MC_Source source) noexcept {
+    if (source == mcCommandedValue) return ErrorId::not_supported;
+    if (frame == mcACS) {
+        velocity = source == mcActualValue ? view.actual_velocity : view.set_velocity;
+        return ErrorId::none;
+    }
+    const auto answer = ctx.groups->velocity_in(group, frame, source);
+    if (answer.error == ErrorId::none) velocity = values_of(answer.six);
+    return answer.error;
 }
 
 }  // namespace detail
@@ -56,16 +53,12 @@ struct MC_GroupReadPosition : GroupReadBlock<MC_GroupReadPosition> {
     static constexpr std::string_view summary = "Gives where the group is.";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
-                         out<&Self::Position>("", "A in ACS, else C; mcCommandedValue: the end of the active command"));
+                         out<&Self::Position>("", "A in ACS, else C of the active tool with Cfg and turns; mcCommandedValue: the end of the active command"));
     }
-    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
-        const auto error = detail::refuse_frame(view, CoordSystem);
-        if (error != ErrorId::none) return Reading::unless(error);
-        switch (Source) {
-            case mcActualValue: Position = detail::place_of(view.actual_position, view.tool_actual, CoordSystem); break;
-            case mcCommandedValue: Position = detail::place_of(view.commanded, view.tool_commanded, CoordSystem); break;
-            case mcSetValue: Position = detail::place_of(view.set_position, view.tool_set, CoordSystem); break;
-        }
+    [[nodiscard]] Reading read_group(const MotionContext& ctx, const axes::GroupView& view) noexcept {
+        const auto answer = ctx.groups->position_in(AxesGroup, CoordSystem, Source);
+        if (answer.error != ErrorId::none) return Reading::unless(answer.error);
+        Position = detail::position_of(answer.place, CoordSystem);
         return Reading::unless(Source == mcActualValue && !view.online ? ErrorId::drive_not_ready : ErrorId::none);
     }
     void clear() noexcept { Position = {}; }
@@ -86,15 +79,12 @@ struct MC_GroupReadVelocity : GroupReadBlock<MC_GroupReadVelocity> {
     static constexpr std::string_view summary = "Gives how fast the group moves.";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
-                         out<&Self::Velocity>("", "u/s of each member; in MCS of X, Y, Z, and rad/s about them"),
+                         out<&Self::Velocity>("", "u/s of each member; in other frames of X, Y, Z, and rad/s about them"),
                          out<&Self::PathVelocity>("u/s", "along the path"));
     }
-    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
-        auto error = detail::refuse_frame(view, CoordSystem);
-        if (error == ErrorId::none && Source == mcCommandedValue) error = ErrorId::not_supported;
+    [[nodiscard]] Reading read_group(const MotionContext& ctx, const axes::GroupView& view) noexcept {
+        const auto error = detail::velocity_into(Velocity, ctx, view, AxesGroup, CoordSystem, Source);
         if (error != ErrorId::none) return Reading::unless(error);
-        Velocity = Source == mcActualValue ? detail::values_of(view.actual_velocity, view.tool_actual_velocity, CoordSystem)
-                                           : detail::values_of(view.set_velocity, view.tool_velocity, CoordSystem);
         PathVelocity = Source == mcActualValue ? detail::path_norm(Velocity, CoordSystem) : view.path_velocity;
         return Reading::unless(Source == mcActualValue && !view.online ? ErrorId::drive_not_ready : ErrorId::none);
     }
@@ -123,7 +113,7 @@ struct MC_GroupReadAcceleration : GroupReadBlock<MC_GroupReadAcceleration> {
                          out<&Self::PathAcceleration>("u/s2", "along the path"));
     }
     [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
-        auto error = detail::refuse_frame(view, CoordSystem);
+        auto error = CoordSystem != mcACS && !view.kinematics ? ErrorId::no_kinematics : ErrorId::none;
         if (error == ErrorId::none && (Source != mcSetValue || CoordSystem != mcACS)) error = ErrorId::not_supported;
         if (error != ErrorId::none) return Reading::unless(error);
         Acceleration = view.set_acceleration;
@@ -149,12 +139,12 @@ struct MC_GroupReadActualPosition : GroupReadBlock<MC_GroupReadActualPosition> {
     static constexpr std::string_view summary = "Gives the group's actual position (v1.0; v2.0: MC_GroupReadPosition).";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
-                         out<&Self::Position>("", "u of each member; in MCS X, Y, Z, RX, RY, RZ"));
+                         out<&Self::Position>("", "u of each member; in other frames X, Y, Z, RX, RY, RZ"));
     }
-    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
-        const auto error = detail::refuse_frame(view, CoordSystem);
-        if (error != ErrorId::none) return Reading::unless(error);
-        Position = detail::values_of(view.actual_position, view.tool_actual, CoordSystem);
+    [[nodiscard]] Reading read_group(const MotionContext& ctx, const axes::GroupView& view) noexcept {
+        const auto answer = ctx.groups->position_in(AxesGroup, CoordSystem, mcActualValue);
+        if (answer.error != ErrorId::none) return Reading::unless(answer.error);
+        Position = CoordSystem == mcACS ? answer.place.axes : detail::values_of(answer.place.six);
         return Reading::unless(view.online ? ErrorId::none : ErrorId::drive_not_ready);
     }
     void clear() noexcept { Position = {}; }
@@ -174,13 +164,12 @@ struct MC_GroupReadActualVelocity : GroupReadBlock<MC_GroupReadActualVelocity> {
     static constexpr std::string_view summary = "Gives the group's actual velocity (v1.0; v2.0: MC_GroupReadVelocity).";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
-                         out<&Self::Velocity>("", "u/s of each member; in MCS of X, Y, Z, and rad/s about them"),
+                         out<&Self::Velocity>("", "u/s of each member; in other frames of X, Y, Z, and rad/s about them"),
                          out<&Self::PathVelocity>("u/s", "of all together"));
     }
-    [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
-        const auto error = detail::refuse_frame(view, CoordSystem);
+    [[nodiscard]] Reading read_group(const MotionContext& ctx, const axes::GroupView& view) noexcept {
+        const auto error = detail::velocity_into(Velocity, ctx, view, AxesGroup, CoordSystem, mcActualValue);
         if (error != ErrorId::none) return Reading::unless(error);
-        Velocity = detail::values_of(view.actual_velocity, view.tool_actual_velocity, CoordSystem);
         PathVelocity = detail::path_norm(Velocity, CoordSystem);
         return Reading::unless(view.online ? ErrorId::none : ErrorId::drive_not_ready);
     }

@@ -106,6 +106,7 @@ protected:
         const Block& block = static_cast<const Block&>(*this);
         const AxisRef axis = block.acted_on();
         if (ctx.view(axis) == nullptr) return this->core_.refuse(ErrorId::invalid_axis);
+        if (block.ExecutionMode == mcDelayed) return this->core_.refuse(ErrorId::not_supported);  // Part 4's
         if (block.ExecutionMode == mcImmediately) return set_at_once(ctx, axis, block.setting());
         this->core_.submit(ctx, axis,
                            {.kind = axes::CommandKind::setting, .buffer_mode = mcBuffered, .details = axes::AxisSetting{block.setting()}});

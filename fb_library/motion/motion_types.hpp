@@ -69,7 +69,7 @@ inline constexpr std::array<std::string_view, 6> buffer_mode_names{"mcAborting",
                                                                    "mcBlendingPrevious", "mcBlendingNext", "mcBlendingHigh"};
 inline constexpr std::array<std::string_view, 4> direction_names{"mcPositiveDirection", "mcShortestWay", "mcNegativeDirection",
                                                                  "mcCurrentDirection"};
-inline constexpr std::array<std::string_view, 2> execution_mode_names{"mcImmediately", "mcQueued"};
+inline constexpr std::array<std::string_view, 3> execution_mode_names{"mcImmediately", "mcQueued", "mcDelayed"};
 inline constexpr std::array<std::string_view, 3> source_names{"mcCommandedValue", "mcSetValue", "mcActualValue"};
 inline constexpr std::array<std::string_view, 3> start_mode_names{"mcAbsolute", "mcRelative", "mcRampIn"};
 inline constexpr std::array<std::string_view, 3> sync_mode_names{"mcShortest", "mcCatchUp", "mcSlowDown"};

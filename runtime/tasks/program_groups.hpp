@@ -18,7 +18,7 @@ public:
     [[nodiscard]] const axes::GroupView* view(axes::GroupRef group) const noexcept override { return groups_.view(group); }
     axes::Submitted submit(axes::GroupRef group, const axes::GroupCommand& command, axes::Owner owner) noexcept override {
         const auto answer = groups_.submit(group, command, owner);
-        if (answer.error == axes::ErrorId::none)
+        if (answer.error == axes::ErrorId::none && !axes::is_administrative(command.kind))
             for (const auto axis : groups_.view(group)->members)
                 if (axis.valid()) claims_[axis.index].motion = program_;
         return answer;
@@ -29,6 +29,16 @@ public:
     axes::ErrorId reset(axes::GroupRef group, axes::Owner owner) noexcept override { return groups_.reset(group, owner); }
     void release_stop(axes::GroupRef group, axes::CommandId id, axes::Owner owner) noexcept override {
         groups_.release_stop(group, id, owner);
+    }
+    [[nodiscard]] const axes::GroupEquipment* equipment(axes::GroupRef group) const noexcept override { return groups_.equipment(group); }
+    [[nodiscard]] axes::PlaceAnswer transformed(axes::GroupRef group, const axes::PlaceQuestion& question) const noexcept override {
+        return groups_.transformed(group, question);
+    }
+    [[nodiscard]] axes::PlaceAnswer position_in(axes::GroupRef group, axes::MC_CoordSystem frame, axes::MC_Source source) const noexcept override {
+        return groups_.position_in(group, frame, source);
+    }
+    [[nodiscard]] axes::SixAnswer velocity_in(axes::GroupRef group, axes::MC_CoordSystem frame, axes::MC_Source source) const noexcept override {
+        return groups_.velocity_in(group, frame, source);
     }
     [[nodiscard]] axes::GroupRef group_of(axes::AxisRef axis) const noexcept override { return groups_.group_of(axis); }
 

@@ -427,9 +427,9 @@ TEST(GroupMotion, FramesNeedAKinematics) {
     in_machine.frame = mcMCS;
     EXPECT_EQ(plain.submit(in_machine).error, ErrorId::no_kinematics);
     EXPECT_EQ(wide.submit(in_machine).error, ErrorId::no_kinematics) << "a fourth axis has no place in X, Y, Z";
-    auto in_product = in_machine;
-    in_product.frame = mcPCS;
-    EXPECT_EQ(cartesian.submit(in_product).error, ErrorId::not_supported);
+    auto of_flange = in_machine;  // flange or fixture: nobody knows
+    of_flange.frame = mcFCS;
+    EXPECT_EQ(cartesian.submit(of_flange).error, ErrorId::not_supported);
     auto turned = in_machine;
     turned.target[4] = 0.1;
     EXPECT_EQ(cartesian.submit(turned).error, ErrorId::out_of_reach) << "X, Y, Z turn nothing";

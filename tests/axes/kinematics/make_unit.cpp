@@ -118,10 +118,10 @@ TEST(MakeKinematics, ToolsAndPayloadsByNumber) {
     Tools tools;
     ASSERT_NE(tools.find(0), nullptr);
     EXPECT_EQ(*tools.find(0), Tool{});
-    EXPECT_FALSE(tools.define(0, {posed(0, 0, 1, 0, 0, 0), {}}));
+    EXPECT_FALSE(tools.define(0, {{0, 0, 1, 0, 0, 0}, {}}));
     EXPECT_EQ(*tools.find(0), Tool{});
     EXPECT_EQ(tools.find(3), nullptr);
-    EXPECT_TRUE(tools.define(3, {posed(0, 0, .1, 0, 0, 0), {.mass = 1.5}}));
+    EXPECT_TRUE(tools.define(3, {{0, 0, .1, 0, 0, 0}, {.mass = 1.5}}));
     EXPECT_EQ(tools.find(3)->body.mass, 1.5);
     EXPECT_FALSE(tools.define(tool_numbers, {}));
     EXPECT_EQ(tools.find(tool_numbers), nullptr);
