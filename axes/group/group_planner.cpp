@@ -185,9 +185,12 @@ double GroupPlanner::rolling_end(const Run& run) const {
     const double full = run.curve.path.length(), s = std::max(run.track.s.load(std::memory_order_relaxed), run.curve.begin());
     const AlongLimits l = run.curve.along(s);
     const double stop = stopping_way(l.velocity, l.deceleration, l.jerk);
-    constexpr double least = 1, most = 2.5;  // s of it at full speed, beside the way of a stop
-    if (run.final_end >= std::min(full, s + stop + least * l.velocity)) return run.final_end;
-    return std::min(full, s + stop + most * l.velocity);
+    constexpr double least = 1, most = 2.5;  // s of it as fast as it goes now or shall go, beside the way of a stop
+    constexpr double slowest = 1e-3;         // of its full speed
+    const double now = run.track.velocity.load(std::memory_order_relaxed);
+    const double v = std::max(now, l.velocity * std::clamp(wish_.factors.velocity, slowest, 1.0));
+    if (run.final_end >= std::min(full, s + stop + least * v)) return run.final_end;
+    return std::min(full, s + stop + most * v);
 }
 
 /// Up to where nothing that may still come can bend the path. As long as there is time for it, room is left for a blend at the end.

@@ -37,6 +37,21 @@ bool arm_lets(std::size_t k, double sense, const MemberVector& at, const MoveSpa
     return space.arm->limits_of(joints_of(next)).ok();
 }
 
+/// Up to when the arm has a pose, looked at densely.
+template <class At>
+double closes_until(double most, const MemberVector& rate, const At& at, const MoveSpace& space) {
+    double fastest = 0;
+    for (std::size_t k = 0; k < space.arm->joint_count(); ++k)
+        if (space.arm->rotary()[k]) fastest = std::max(fastest, std::abs(rate[k]) * space.arm->map().settings(k).unit);
+    double step = std::min(0.02, fastest > 0 ? most_turn / fastest : 0.02), time = 0;
+    for (int i = 0; i < most_looks && time < most && step > 1e-10; ++i) {
+        const double next = std::min(time + step, most);
+        if (space.arm->forward(joints_of(at(next)), space.tool).miss.ok()) time = next;
+        else step /= 2;
+    }
+    return time;
+}
+
 /// Members on a straight line of their own, each at its jogging velocity. One that stands at its limit does not keep the others.
 MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
     MemberVector rate{}, end{};
@@ -72,6 +87,11 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         }
         time = inside;
         first = space.members;
+    }
+    if (space.arm != nullptr && space.arm->may_not_close() && space.arm->forward(joints_of(from.members), space.tool).miss.ok()) {
+        const double closes = closes_until(time, rate, at, space);
+        if (closes < time) first = space.members;
+        time = closes;
     }
     MoveShape shape;
     shape.end.members = at(time);
@@ -199,6 +219,18 @@ private:
     double time_ = 0, turned_ = 0;
 };
 
+/// Whether the members stand as the arm would put them there, and not in a singularity.
+ErrorId refuse_start(const MoveEnd& from, const MoveSpace& space, const Pose& here) {
+    if (space.arm->singularity(joints_of(from.members)).measure < nearest_measure) return ErrorId::singular_path;
+    const AxisSolution stand = space.arm->inverse(here, space.tool, from.configuration, joints_of(from.members));
+    if (stand.miss.fault == KinematicFault::joint_limit) return ErrorId::beyond_software_limit;
+    if (!stand.ok()) return ErrorId::out_of_reach;
+    const MemberVector q = members_of(stand.axes);
+    for (std::size_t k = 0; k < space.members; ++k)
+        if (std::abs(q[k] - from.members[k]) > 1e-9 * size_of(q[k])) return ErrorId::out_of_reach;  // a beam that is askew
+    return ErrorId::none;
+}
+
 MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
     const ForwardResult here = space.arm->forward(joints_of(from.members), space.tool);
     const ForwardResult pressed = space.arm->forward(joints_of(move.target), space.tool);
@@ -216,6 +248,11 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         most = std::min(most, (reach.angular - gone) / angular);
     }
     if (!(most > 0) || (linear == 0 && angular == 0)) return stands(from);
+    if (const auto error = refuse_start(from, space, here.pose); error != ErrorId::none) {
+        MoveShape shape;
+        shape.error = error;
+        return shape;
+    }
     PoseWalk walk(from, space, here.pose, rate);
     const double time = walk.reach(most);
     const double size = position_of(here.pose).norm();

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
-#include "tests/axes/group/jog_rig.hpp"
+#include "tests/axes/group/jog_arms.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -232,6 +233,134 @@ TEST(GroupJog, SharesOfTheVelocityActAtOnce) {
     rig.held.velocity = 1;
     rig.hold_for(400);
     EXPECT_NEAR(rig.axis(0).set_velocity, 10, 0.02);
+}
+
+/// A SCARA of 200 and 150, its tool at (200, 150): the elbow at a right angle.
+JogArm bent_scara() { return arm_in_degrees("scara", ScaraLengths{.first = 200, .second = 150}, {true, true, false, true}, {0, 90, 0, 0}); }
+struct ScaraRig : JogRig {
+    ScaraRig() : JogRig(loose(axes_of(bent_scara())), arm_of(bent_scara().description), jogging_of_arms()) {
+        const auto there = give({.kind = GroupCommandKind::direct_absolute, .target = bent_scara().start});
+        EXPECT_TRUE(until([&] { return status(there.id) == CommandStatus::done; }, 5000));
+        run(3);
+    }
+    static std::vector<AxisConfig> loose(std::vector<AxisConfig> axes) {
+        for (auto& axis : axes) axis.limits.position_min = -(axis.limits.position_max = 1e6);
+        return axes;
+    }
+    [[nodiscard]] double elbow() const { return std::sin(point()[1] * std::numbers::pi / 180); }
+};
+
+// G-033, G-091: in MCS the tool goes straight while it starts, cruises and brakes. Its velocity is the jogging one, or what a member's leaves. By hand:
+// the tool is where two links put it.
+TEST(GroupJog, TheToolGoesStraight) {
+    ScaraRig rig;
+    rig.frame = mcMCS;
+    const auto from = rig.path.size();
+    rig.press({-1, 0.5});
+    double fastest = 0;
+    for (int i = 0; i < 700; ++i) {
+        rig.hold_for(1);
+        fastest = std::max(fastest, rig.view().path_velocity);
+    }
+    rig.press({});
+    ASSERT_TRUE(rig.until_held([&] { return rig.view().state == GroupStandby; }, 1500));
+    for (std::size_t n = from; n < rig.path.size(); ++n) {
+        const double a = rig.path[n][0] * std::numbers::pi / 180, b = a + rig.path[n][1] * std::numbers::pi / 180;
+        const double x = 200 * std::cos(a) + 150 * std::cos(b) - 200, y = 200 * std::sin(a) + 150 * std::sin(b) - 150;
+        ASSERT_LE(std::abs(0.5 * x + y) / std::hypot(1, 0.5), 1e-9 * 250);
+        ASSERT_NEAR(rig.path[n][0] + rig.path[n][1] + rig.path[n][3], 90, 1e-9) << "the tool does not turn";
+    }
+    EXPECT_LT(rig.point()[1] - 90, 60);
+    EXPECT_GT(fastest, 60) << "a member at 40 degrees a second leaves so much here";
+    EXPECT_LE(fastest, 100 * (1 + 1e-6));
+}
+
+// G-091: it ends in front of the singularity, where the sine of the elbow is 0.02, without an error; it can be jogged back. In the singularity itself
+// the pose cannot be jogged, and that is said; a jog of the axes leads out.
+TEST(GroupJog, ASingularityEndsItAndTheAxesLeadOut) {
+    ScaraRig rig;
+    rig.frame = mcMCS;
+    rig.press({1});
+    ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 8000));
+    EXPECT_EQ(rig.status(rig.answer.id), CommandStatus::done);
+    EXPECT_NEAR(rig.elbow(), 0.02, 1e-6);
+    EXPECT_GE(rig.elbow(), 0.02);
+    rig.hold_for(100);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    rig.press({});
+    rig.press({1});
+    ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 100));
+    EXPECT_EQ(rig.status(rig.answer.id), CommandStatus::done) << "again: no way, and no error";
+    rig.press({});
+    rig.press({-1});
+    ASSERT_TRUE(rig.until_held([&] { return rig.elbow() > 0.3; }, 3000)) << "back";
+    rig.press({});
+    ASSERT_TRUE(rig.until_held([&] { return rig.view().state == GroupStandby; }, 1500));
+
+    rig.frame = mcACS;
+    rig.pins.angular = rig.point()[1];
+    rig.press({0, -1});
+    ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 3000));
+    EXPECT_NEAR(rig.point()[1], 0, 1e-12) << "straight";
+    rig.pins = {};
+    rig.frame = mcMCS;
+    rig.press({});
+    rig.press({-1});
+    ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 100));
+    EXPECT_EQ(rig.error_of(rig.answer.id), ErrorId::singular_path);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+    EXPECT_EQ(rig.view().error, 0);
+    rig.frame = mcACS;
+    rig.press({});
+    rig.press({0, 1});
+    ASSERT_TRUE(rig.until_held([&] { return rig.elbow() > 0.1; }, 1000));
+    rig.press({});
+    ASSERT_TRUE(rig.until_held([&] { return rig.view().state == GroupStandby; }, 1500));
+    rig.frame = mcMCS;
+    rig.press({-1});
+    const double x = rig.view().tool_set[0];
+    ASSERT_TRUE(rig.until_held([&] { return rig.view().tool_set[0] < x - 20; }, 1500));
+}
+
+// G-089, G-090: a turn of the tool about its own point, by its distance: the point stays.
+TEST(GroupJog, TheToolTurnsAboutItsPoint) {
+    ScaraRig rig;
+    rig.frame = mcMCS;
+    rig.pins.angular = 0.5;
+    const auto at = rig.view().tool_set;
+    rig.press({0, 0, 0, 0, 0, 1});
+    ASSERT_TRUE(rig.until_held(
+        [&] {
+            EXPECT_NEAR(rig.view().tool_set[0], at[0], 1e-9 * 250);
+            EXPECT_NEAR(rig.view().tool_set[1], at[1], 1e-9 * 250);
+            // As fast as the slowest turning member is jogged: 40 degrees a second.
+            EXPECT_LE(std::abs(rig.view().tool_velocity[5]), 40 * std::numbers::pi / 180 * (1 + 1e-6));
+            return !rig.active();
+        },
+        3000));
+    EXPECT_NEAR(rig.view().tool_set[5] - at[5], 0.5, 1e-12);
+}
+
+// The rods of a delta meet at every place that its axes are jogged to.
+TEST(GroupJog, ADeltasRodsMeet) {
+    const auto arms = every_kind_of_arm();
+    const auto& delta = *std::find_if(arms.begin(), arms.end(), [](const JogArm& arm) { return arm.name == "linear_delta"; });
+    const auto kinematics = arm_of(delta.description);
+    JogRig rig(ScaraRig::loose(axes_of(delta)), kinematics, jogging_of_arms());
+    rig.press({1, 0, 0});  // one carriage away from the others, until its rod is too short
+    ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 30000));
+    EXPECT_EQ(rig.status(rig.answer.id), CommandStatus::done);
+    EXPECT_GT(rig.point()[0], 100);
+    const auto miss_at = [&](double more) {
+        Joints q{};
+        q[0] = rig.point()[0] + more;
+        return kinematics->forward(q, {}).miss;
+    };
+    EXPECT_TRUE(miss_at(0).ok());
+    EXPECT_FALSE(miss_at(1e-3).ok()) << "as far as there is a place for the tool";
+    rig.press({});
+    rig.press({-1, 0, 0});
+    ASSERT_TRUE(rig.until_held([&] { return rig.point()[0] < 100; }, 30000));
 }
 
 }  // namespace
