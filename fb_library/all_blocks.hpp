@@ -8,6 +8,7 @@
 #include "fb_library/groups/group_administration.hpp"
 #include "fb_library/groups/group_arm_blocks.hpp"
 #include "fb_library/groups/group_frames.hpp"
+#include "fb_library/groups/group_jogging.hpp"
 #include "fb_library/groups/group_limits.hpp"
 #include "fb_library/groups/group_moves.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
@@ -102,7 +103,8 @@ using GroupBlocks = BlockList<MC_AddAxisToGroup, MC_RemoveAxisFromGroup, MC_Ungr
                               MC_ReadKinTransform, MC_ReadDHParameters, MC_ReadJointInfo, MC_GroupTransformPosition, MC_GroupSetPosition,
                               MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool, MC_GroupWritePayloadData,
                               MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
-                              MC_GroupReadRigidBodyDynamic>;
+                              MC_GroupReadRigidBodyDynamic, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics,
+                              MC_GroupReadJoggingDynamics>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 

@@ -147,6 +147,10 @@ void AxisGroup::settle() noexcept {
             queue_.activate_next();
             begun_ = false;
         }
+        if (begun_ && jogs()) {  // at rest, and perhaps for another direction
+            begun_ = false;
+            run_.clear();
+        }
         if (begun_ || begin_active()) return;
     }
 }
@@ -155,9 +159,14 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
     const auto& command = active.command;
     if (!run_.exists()) {
         hold_ = members_.set_positions();
-        if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none) return error;
-        if (goes_nowhere(command, hold_, members_)) return ErrorId::none;
-        if (!run_.restart(members_, view_.override_factors)) return std::nullopt;
+        const bool way = command.kind != GroupCommandKind::jog;
+        if (way)
+            if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none)
+                return error;
+        if (way && goes_nowhere(command, hold_, members_)) return ErrorId::none;
+        if (!(way ? run_.restart(members_, view_.override_factors)
+                  : run_.restart(members_, jog_.factors(view_.override_factors), &view_.jogging_dynamics)))
+            return std::nullopt;
         sent_ = 0;
     }
     send_waiting();
@@ -174,7 +183,10 @@ void AxisGroup::send_waiting() noexcept {
         const auto& command = accepted.command;
         if (is_setting(command.kind) || accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow;
-        if (!run_.send(accepted.id, command, accepted.place, resolved(command.dynamics, view_.default_dynamics), joins)) return false;
+        const bool sent = command.kind == GroupCommandKind::jog
+                              ? run_.send(accepted.id, command, accepted.place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
+                              : run_.send(accepted.id, command, accepted.place, resolved(command.dynamics, view_.default_dynamics), joins);
+        if (!sent) return false;
         sent_ = accepted.id;
         return true;
     };
@@ -199,6 +211,7 @@ bool AxisGroup::begin_active() noexcept {
     }
     if (run_.stuck() != ErrorId::none || run_.stops()) run_.clear();
     elapsed_ = {};
+    if (jogs() && !turn_jog()) return false;
     const auto over_with = begin_way(active);
     if (!over_with) return true;
     queue_.finish_active(*over_with == ErrorId::none ? Outcome::done : Outcome::error, *over_with);
@@ -208,6 +221,7 @@ bool AxisGroup::begin_active() noexcept {
 /// One period of the way, or of the wait.
 void AxisGroup::go_on(Duration period) noexcept {
     run_.advance(period);
+    tend_jog(period);
     const auto error = members_.lead([&](std::size_t place) { return run_.exists() ? run_.of(place) : MotionState{hold_[place], 0, 0}; });
     if (error != ErrorId::none || run_.fault() != ErrorId::none) {
         fail(static_cast<std::uint16_t>(error != ErrorId::none ? error : run_.fault()));
@@ -229,7 +243,7 @@ void AxisGroup::go_on(Duration period) noexcept {
     if (!(interrupts && active.command.kind == GroupCommandKind::wait)) elapsed_ += period;
     if (way && run_.stuck() != ErrorId::none && run_.over() && !run_.arrived()) queue_.finish_active(Outcome::error, run_.stuck());
     const bool done = active.command.kind == GroupCommandKind::wait ? !interrupts && elapsed_ >= active.command.duration
-                                                                    : way && run_.arrived() && run_.command() == active.id;
+                                                                    : way && !jogs() && run_.arrived() && run_.command() == active.id;
     if (done) queue_.finish_active(Outcome::done);
 }
 

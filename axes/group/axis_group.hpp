@@ -17,6 +17,7 @@
 
 #include "axes/group/group_config.hpp"
 #include "axes/group/group_equipment.hpp"
+#include "axes/group/group_jog.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_queue.hpp"
 #include "axes/group/group_state.hpp"
@@ -84,6 +85,11 @@ private:
     /// None: it can be gone, or not yet. Something: what it is over with.
     [[nodiscard]] std::optional<ErrorId> begin_way(const AcceptedGroupCommand& active) noexcept;
     void send_waiting() noexcept;
+    [[nodiscard]] bool jogs() const noexcept { return queue_.active().command.kind == GroupCommandKind::jog; }
+    /// False: nobody wants it any more, and it is over.
+    [[nodiscard]] bool turn_jog() noexcept;
+    void tend_jog(Duration period) noexcept;
+    ErrorId set_jog(const GroupSetting& setting) noexcept;
     void go_on(Duration period) noexcept;
     void watch_reset() noexcept;
     /// The active one, where it is a setting: done.
@@ -96,6 +102,7 @@ private:
     GroupMembers members_;
     GroupQueue queue_;
     PathRun run_;
+    GroupJog jog_;        // while jogs()
     GroupView view_;      // and its settings: override, dynamics, error, reset
     GroupEquipment equipment_;
     JointVector hold_{};  // where the members stand without a run

@@ -21,6 +21,7 @@ enum class GroupCommandKind : std::uint8_t {
     circular_relative,
     direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
     direct_relative,
+    jog,   ///< target = direction by slot; goes on while it is held (HoldJog), never waits
     wait,  ///< duration
     halt,
     // beside it
@@ -42,10 +43,10 @@ enum class GroupCommandKind : std::uint8_t {
     return kind == GroupCommandKind::set_frame || kind == GroupCommandKind::write_tool;
 }
 [[nodiscard]] constexpr bool goes_a_way(GroupCommandKind kind) noexcept {
-    return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::direct_relative;
+    return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::jog;
 }
 [[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
-    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::circular_relative ||
+    return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::jog || kind == GroupCommandKind::circular_relative ||
            kind == GroupCommandKind::direct_relative || kind == GroupCommandKind::set_position_relative;
 }
 [[nodiscard]] constexpr bool is_circular(GroupCommandKind kind) noexcept {
@@ -71,6 +72,14 @@ struct CirclePins {
     friend bool operator==(const CirclePins&, const CirclePins&) = default;
 };
 
+/// How far a jog goes at most from where it was pressed: u of the tool's point, rad of its turns; in ACS u of each member, 0 = as far as it can. And what
+/// share of the jogging dynamics it takes (HoldJog).
+struct JogPins {
+    double linear = 0, angular = 0;
+    double velocity = 1, acceleration = 1;
+    friend bool operator==(const JogPins&, const JogPins&) = default;
+};
+
 struct GroupCommand {
     GroupCommandKind kind = GroupCommandKind::none;
     MC_CoordSystem frame = mcACS;
@@ -79,7 +88,8 @@ struct GroupCommand {
     double transition_parameter = 0;  ///< >= 0: u for a distance or deviation, a factor of a velocity
     MC_OrientationMode orientation = mcLinear;
     CirclePins circle{};
-    JointVector target{};  ///< ACS: by place. Other frames: X Y Z [u], RX RY RZ [rad]
+    JointVector target{};  ///< ACS: by place. Other frames: X Y Z [u], RX RY RZ [rad]. jog: -1 to 1 each
+    JogPins jog{};
     PathDynamics dynamics{};
     Configuration wanted{};  ///< which way of the arm reaches a target in another frame than ACS; a path keeps the one it begins with
     Duration duration{};
@@ -111,8 +121,25 @@ struct WriteDynamics {
     enum class Which : std::uint8_t { default_dynamics, reference_dynamics } which = Which::default_dynamics;
     PathDynamics dynamics{};
 };
-/// AddMember ... | MC_GroupSetOverride | of tools and loads
-using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, SelectTool, SelectPayload,
-                                  WritePayload, WriteBodies>;
+/// How a group is jogged: the tool's point, and each member by its place. 0 = not said.
+struct JoggingDynamics {
+    PathDynamics path{};
+    JointVector velocity{}, acceleration{}, deceleration{}, jerk{};  ///< u/s, u/s2, u/s3
+    friend bool operator==(const JoggingDynamics&, const JoggingDynamics&) = default;
+};
+/// MC_GroupWriteJoggingDynamics: negative = stays as it is.
+struct WriteJoggingDynamics {
+    JoggingDynamics dynamics{};
+};
+/// Who jogs says so in each cycle, or the group stops after the least jog lease of its members. A direction of 0 stops it; another direction than the
+/// one that is gone stops first.
+struct HoldJog {
+    CommandId id = 0;
+    JointVector direction{};                ///< -1 to 1 each, as GroupCommand::target
+    double velocity = 1, acceleration = 1;  ///< of the jogging dynamics: 0 to 1; above 0 to 1
+};
+/// AddMember ... | MC_GroupSetOverride | of jogging | of tools and loads
+using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics,
+                                  HoldJog, SelectTool, SelectPayload, WritePayload, WriteBodies>;
 
 }  // namespace taktwerk::axes

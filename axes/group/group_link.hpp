@@ -21,6 +21,7 @@ namespace taktwerk::axes {
 struct MemberLimits {
     double velocity = 0, acceleration = 0, jerk = 0;
     double low = 0, high = 0;
+    double speeding = 0, braking = 0;  ///< u/s2, of a jog in ACS: `acceleration` is the greater of both
 };
 
 struct GroupOrder {
@@ -38,13 +39,14 @@ struct GroupOrder {
 
     CommandId id = 0;
     GroupCommand command{};  ///< target by rank; dynamics resolved
-    MemberVector target{};
-    CommandPlace place{};  ///< as it was accepted
-    bool joins = false;  ///< may be blended with the one before it
+    MemberVector target{};  ///< of a jog: where the members were when it was pressed
+    CommandPlace place{};   ///< as it was accepted
+    bool joins = false;     ///< may be blended with the one before it
 
     bool stands = false;
     Override factors{};
-    PathDynamics ramp{};  ///< of the stop
+    PathDynamics ramp{};    ///< of the stop
+    bool own_ramp = false;  ///< the stop is as soft as the command that is on the way
 };
 
 /// What became of a move that is not gone.

@@ -95,6 +95,7 @@ bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
     auto& made = runs_[next_ % 2];
     made = std::make_unique<Run>(space_, track, lead_);
     made->first = move.id;
+    made->rolls = move.command.kind == GroupCommandKind::jog;
     ++next_;
     return append(*made, move, shape, false);
 }
@@ -127,7 +128,7 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     PathMove element;
     element.element = shape.element;
     element.chart = shape.chart;
-    element.feed = feed_of(move.command.dynamics);
+    element.feed = shape.feed ? *shape.feed : feed_of(move.command.dynamics);
     element.command = move.id;
     const BlendRequest request = blended ? blend_of(run, move, shape) : BlendRequest{};
     const Path kept = blended ? curve.path : Path{};
@@ -185,9 +186,23 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     return true;
 }
 
+/// A jog is released long before its end: there is no sense in planning all of it.
+double GroupPlanner::rolling_end(const Run& run) const {
+    const double full = run.curve.path.length(), s = std::max(run.track.s.load(std::memory_order_relaxed), run.curve.begin());
+    const AlongLimits l = run.curve.along(s);
+    const double stop = stopping_way(l.velocity, l.deceleration, l.jerk);
+    constexpr double least = 1, most = 2.5;  // s of it as fast as it goes now or shall go, beside the way of a stop
+    constexpr double slowest = 1e-3;         // of its full speed
+    const double now = run.track.velocity.load(std::memory_order_relaxed);
+    const double v = std::max(now, l.velocity * std::clamp(wish_.factors.velocity, slowest, 1.0));
+    if (run.final_end >= std::min(full, s + stop + least * v)) return run.final_end;
+    return std::min(full, s + stop + most * v);
+}
+
 /// Up to where nothing that may still come can bend the path. As long as there is time for it, room is left for a blend at the end.
 double GroupPlanner::final_end(const Run& run) const {
     const double full = run.curve.path.length();
+    if (run.rolls) return rolling_end(run);
     if (!run.open || run.final_end >= full) return full;
     const auto& section = run.curve.path.sections().back();
     const double half = full - std::min(section.element.length() / 2, section.length);
@@ -212,7 +227,7 @@ void GroupPlanner::publish(Run& run) {
 
 void GroupPlanner::feed(Run& run) {
     run.curve.forget_before(run.track.part.load(std::memory_order_relaxed));
-    run.curve.wish(wish_.stands, wish_.factors, wish_.ramp);
+    run.curve.wish(wish_.stands, wish_.own_ramp, wish_.factors, wish_.ramp);
     run.final_end = final_end(run);
     publish(run);
     PathWish wish;

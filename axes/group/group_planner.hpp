@@ -32,6 +32,7 @@ private:
         bool open = true;      // a later move may join
         bool offered = false;  // its first stretch
         bool said_stuck = false;
+        bool rolls = false;           // a jog: planned as far as it goes soon
         std::uint32_t published = 0;  // parts in front of it are the track's
         double final_end = 0;
     };
@@ -44,6 +45,7 @@ private:
     [[nodiscard]] BlendRequest blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
     void feed(Run& run);
     [[nodiscard]] double final_end(const Run& run) const;
+    [[nodiscard]] double rolling_end(const Run& run) const;
     void publish(Run& run);
     void say(CommandId id, ErrorId error, bool standing = false);
     [[nodiscard]] Run* last() noexcept { return next_ == 0 ? nullptr : runs_[(next_ - 1) % 2].get(); }

@@ -46,6 +46,7 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
     if (disabling_ != 0 || going_off_ != 0) return ErrorId::state_forbids;
     if (kind == GroupCommandKind::stop) return lock_ == 0 ? ErrorId::none : ErrorId::state_forbids;
     if (state_ == GroupStopping) return ErrorId::state_forbids;
+    if (jogs() && has_place_in_queue(kind) && waits(command)) return ErrorId::state_forbids;  // G-090
     if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
     if (kind == GroupCommandKind::resume) return interrupted_ ? ErrorId::none : ErrorId::nothing_interrupted;
     return interrupting_ != 0 && !waits(command) ? ErrorId::state_forbids : ErrorId::none;
@@ -80,6 +81,10 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     if (const auto error = check_dynamics(command.dynamics); error != ErrorId::none) return error;
     if (command.buffer_mode > mcBlendingHigh) return ErrorId::buffer_mode_not_supported;
     if (command.kind == GroupCommandKind::wait && command.duration < Duration{}) return ErrorId::invalid_parameter;
+    if (command.kind == GroupCommandKind::jog) {
+        const auto error = refuse_frame(command, config_.kinematics.get(), members_);
+        return error != ErrorId::none ? error : GroupJog::refuse(command, view_.jogging_dynamics, members_);
+    }
     if (goes_a_way(command.kind))
         if (const auto error = refuse_way(command); error != ErrorId::none) return error;
     return has_place_in_queue(command.kind) && waits(command) && queue_.full() ? ErrorId::queue_full : ErrorId::none;
@@ -127,8 +132,11 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
         run_.clear();
         hold_ = members_.set_positions();
     } else {
-        run_.stop(command.dynamics, view_.override_factors);
+        const auto& jogging = view_.jogging_dynamics.path;
+        const bool jog = command.kind == GroupCommandKind::jog;
+        run_.stop(jog ? PathDynamics{0, 0, jogging.deceleration, jogging.jerk} : command.dynamics, view_.override_factors);
     }
+    if (command.kind == GroupCommandKind::jog) jog_.press(command, jog_lease_of(members_));
     const auto id = queue_.next_id();
     queue_.activate({id, owner, command, place});
     fire(GroupEvent::motion);
@@ -147,6 +155,10 @@ CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcep
 
 CommandId AxisGroup::take_interrupt(const GroupCommand& command) noexcept {
     const auto id = queue_.next_id();
+    if (jogs()) {  // nobody goes on with a jog but by pressing again
+        queue_.finish_active(Outcome::aborted);
+        begun_ = false;
+    }
     if (members_.led()) {
         interrupting_ = id;
         run_.stop(command.dynamics, Override{});
@@ -233,6 +245,43 @@ void AxisGroup::release_stop(CommandId id) noexcept {
     view_.lock = lock_;
 }
 
+// --- jogging --------------------------------------------------------------------------------------------------------------------
+
+bool AxisGroup::turn_jog() noexcept {
+    if (jog_.released()) {
+        run_.clear();
+        hold_ = members_.set_positions();
+        queue_.finish_active(jog_.expired() ? Outcome::aborted : Outcome::done);
+        return false;
+    }
+    if (run_.exists() && !jog_.stops()) return true;  // the planner has it
+    run_.clear();
+    hold_ = members_.set_positions();
+    auto next = queue_.active();
+    jog_.turn(next.command.target, hold_);
+    queue_.activate(next);
+    return true;
+}
+
+void AxisGroup::tend_jog(Duration period) noexcept {
+    if (!jogs()) return;
+    jog_.pass(period);
+    if (!run_.exists() || run_.stops()) return;
+    const auto factors = jog_.factors(view_.override_factors);
+    if (begun_ && jog_.stops()) run_.release(factors);
+    else run_.override_with(factors);
+}
+
+ErrorId AxisGroup::set_jog(const GroupSetting& setting) noexcept {
+    if (const auto* held = std::get_if<HoldJog>(&setting)) {
+        if (!jogs() || held->id != queue_.active().id) return ErrorId::unknown_command;
+        const auto error = GroupJog::refuse(*held);
+        if (error == ErrorId::none) jog_.hold(*held);
+        return error;
+    }
+    return write_jogging(std::get<WriteJoggingDynamics>(setting).dynamics, view_.jogging_dynamics);
+}
+
 // --- settings -------------------------------------------------------------------------------------------------------------------
 
 ErrorId AxisGroup::change_members(const GroupSetting& setting) noexcept {
@@ -277,6 +326,8 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         put(kept.acceleration, written->dynamics.acceleration);
         put(kept.deceleration, written->dynamics.deceleration);
         put(kept.jerk, written->dynamics.jerk);
+    } else if (std::holds_alternative<HoldJog>(setting) || std::holds_alternative<WriteJoggingDynamics>(setting)) {
+        error = set_jog(setting);
     } else if (setting.index() >= GroupSetting{SelectTool{}}.index()) {
         error = equip(setting);
     } else {

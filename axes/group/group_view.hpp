@@ -64,6 +64,7 @@ struct GroupView {
 
     Override override_factors;
     PathDynamics default_dynamics, reference_dynamics;
+    JoggingDynamics jogging_dynamics;
 
     [[nodiscard]] constexpr bool has(std::size_t place) const noexcept { return place < most_members && members[place].valid(); }
 

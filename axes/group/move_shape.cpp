@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "axes/group/jog_shape.hpp"
 #include "axes/group/written_pose.hpp"
 #include "axes/path/arc.hpp"
 #include "axes/pose_math.hpp"
@@ -130,6 +131,7 @@ void walk(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, con
 
 MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
     const auto kind = move.command.kind;
+    if (kind == GroupCommandKind::jog) return jog_shape(move, from, space);
     const bool direct = kind == GroupCommandKind::direct_absolute || kind == GroupCommandKind::direct_relative;
     if (move.command.frame == mcACS) {
         MemberVector to = move.target;

@@ -1,6 +1,7 @@
 #pragma once
 // A command as a curve: from where the move before it ends, checked along its whole length before anything moves. Pure; service side.
 
+#include <optional>
 #include <vector>
 
 #include "axes/group/group_link.hpp"
@@ -20,6 +21,7 @@ struct MoveShape {
     PathElement element;
     PathChart chart{};
     bool through_arm = false;
+    std::optional<PathFeed> feed;       ///< instead of the command's
     std::vector<MemberVector> members;  ///< along it, at even distances
     MoveEnd end;
 };

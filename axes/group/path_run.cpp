@@ -32,6 +32,18 @@ MemberLimits limits_of(const Axis& axis) noexcept {
     return m;
 }
 
+void cap(MemberLimits& m, const JoggingDynamics& caps, std::size_t place) noexcept {
+    const auto lower = [](double& limit, double most) {
+        if (most > 0) limit = std::min(limit, most);
+    };
+    m.speeding = m.braking = m.acceleration;
+    lower(m.velocity, caps.velocity[place]);
+    lower(m.speeding, caps.acceleration[place]);
+    lower(m.braking, caps.deceleration[place]);
+    m.acceleration = std::max(m.speeding, m.braking);
+    lower(m.jerk, caps.jerk[place]);
+}
+
 }  // namespace
 
 struct PathRun::Inside {
@@ -74,7 +86,7 @@ void PathRun::tell() noexcept {
     in.told = in.link.orders.try_push(in.wish);
 }
 
-bool PathRun::restart(const GroupMembers& members, const Override& factors) noexcept {
+bool PathRun::restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps) noexcept {
     auto& in = *inside_;
     GroupOrder order;
     order.kind = GroupOrder::Kind::restart;
@@ -86,6 +98,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors) noex
         if (!members.has(i) || count == max_path_axes) continue;
         order.from[count] = members.axis(i).view().set_position;
         order.limits[count] = limits_of(members.axis(i));
+        if (caps != nullptr) cap(order.limits[count], *caps, i);
         states_[i] = {order.from[count], 0, 0};
         end_[i] = order.from[count];
         in.places[count++] = static_cast<std::uint8_t>(i);
@@ -105,8 +118,8 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors) noex
     return true;
 }
 
-bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics,
-                   bool joins) noexcept {
+bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
+                   const JointVector* pressed) noexcept {
     auto& in = *inside_;
     GroupOrder order;
     order.kind = GroupOrder::Kind::move;
@@ -114,7 +127,10 @@ bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace
     order.id = id;
     order.command = command;
     order.command.dynamics = dynamics;
-    for (std::size_t k = 0; k < in.members; ++k) order.target[k] = command.target[in.places[k]];
+    for (std::size_t k = 0; k < in.members; ++k) {
+        order.target[k] = (pressed != nullptr ? *pressed : command.target)[in.places[k]];
+        if (pressed != nullptr && command.frame == mcACS) order.command.target[k] = command.target[in.places[k]];
+    }
     order.place = place;
     order.joins = joins;
     return in.link.orders.try_push(order);
@@ -134,11 +150,12 @@ void PathRun::override_with(const Override& factors) noexcept {
     tell();
 }
 
-void PathRun::stop(const PathDynamics& ramp, const Override& factors) noexcept {
+void PathRun::stand(const PathDynamics& ramp, bool own, const Override& factors) noexcept {
     auto& in = *inside_;
     if (!exists_) return;
     stops_ = true;
     in.wish.stands = true;
+    in.wish.own_ramp = own;
     in.wish.factors = factors;
     in.wish.ramp = ramp;
     in.told = false;

@@ -30,10 +30,13 @@ public:
     void service();
 
     /// The members stand where they are; whatever was on the way is forgotten. `factors` from now on. False: not now, ask again in the next cycle.
-    bool restart(const GroupMembers& members, const Override& factors) noexcept;
+    /// `caps`: the members keep below these too, where they are above 0.
+    bool restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps = nullptr) noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
     /// False: not now.
-    bool send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins) noexcept;
+    /// `pressed`: where a jog began, by place.
+    bool send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
+              const JointVector* pressed = nullptr) noexcept;
     /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
     [[nodiscard]] std::optional<ErrorId> verdict(CommandId id) noexcept;
     /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
@@ -47,7 +50,9 @@ public:
     /// Other factors, from the planner's next answer on. Where the way left is too short for less acceleration or jerk they wait until it is not (G-071).
     void override_with(const Override& factors) noexcept;
     /// Comes to rest on the way, at its end at the latest. `ramp`: deceleration and jerk, 0 = the limits'.
-    void stop(const PathDynamics& ramp, const Override& factors) noexcept;
+    void stop(const PathDynamics& ramp, const Override& factors) noexcept { stand(ramp, false, factors); }
+    /// Comes to rest as its command says.
+    void release(const Override& factors) noexcept { stand({}, true, factors); }
     /// After a stop: on to the end.
     void resume(const Override& factors) noexcept;
 
@@ -82,6 +87,7 @@ public:
 private:
     struct Inside;
     void tell() noexcept;
+    void stand(const PathDynamics& ramp, bool own, const Override& factors) noexcept;
     void look() noexcept;
     void see_limits() noexcept;
 

@@ -27,8 +27,8 @@ void RunCurve::forget_before(std::uint32_t part) {
     forgotten += static_cast<std::uint32_t>(count);
 }
 
-void RunCurve::wish(bool stands, const Override& factors, const PathDynamics& ramp) noexcept {
-    stands_ = stands;
+void RunCurve::wish(bool stands, bool own_ramp, const Override& factors, const PathDynamics& ramp) noexcept {
+    ramps_ = stands && !own_ramp;
     factors_ = factors;
     ramp_ = ramp;
 }
@@ -75,8 +75,8 @@ TimedCurvePoint RunCurve::on(std::size_t i, double s) const noexcept {
     const double faster = std::min(said(section.feed.acceleration) * share, least);
     path_limits.acceleration = faster * factors_.acceleration;
     path_limits.deceleration =
-        std::min(said(stands_ ? ramp_.deceleration : section.feed.deceleration) * share, least) * factors_.acceleration;
-    path_limits.jerk = std::min(said(stands_ ? ramp_.jerk : section.feed.jerk) * share, axes.jerk) * factors_.jerk;
+        std::min(said(ramps_ ? ramp_.deceleration : section.feed.deceleration) * share, least) * factors_.acceleration;
+    path_limits.jerk = std::min(said(ramps_ ? ramp_.jerk : section.feed.jerk) * share, axes.jerk) * factors_.jerk;
     return p;
 }
 

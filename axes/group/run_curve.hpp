@@ -26,7 +26,8 @@ public:
 
     /// Sections that the cycle has left; `part`: that it is on.
     void forget_before(std::uint32_t part);
-    void wish(bool stands, const Override& factors, const PathDynamics& ramp) noexcept;
+    /// `own_ramp`: who stands does it as softly as the command says.
+    void wish(bool stands, bool own_ramp, const Override& factors, const PathDynamics& ramp) noexcept;
 
     [[nodiscard]] std::span<const PathAxisLimits> axis_limits() const noexcept { return limits_; }
     [[nodiscard]] WayPoint place(std::size_t index, double s) const noexcept;
@@ -53,7 +54,7 @@ private:
 
     const Kinematics* arm_;
     std::vector<PathAxisLimits> limits_;
-    bool stands_ = false;
+    bool ramps_ = false;  // by ramp_, not by the command
     Override factors_{};
     PathDynamics ramp_{};
 };

@@ -72,6 +72,10 @@ bool Kinematics::closed_form() const noexcept {
     return six == nullptr || six->closed_form();
 }
 
+bool Kinematics::may_not_close() const noexcept {
+    return std::holds_alternative<RotaryDelta>(arm_) || std::holds_alternative<LinearDelta>(arm_);
+}
+
 ForwardResult Kinematics::forward(const Joints& axes, const Pose& tool) const noexcept {
     if (!finite(axes) || !sound(tool)) return {{}, {KinematicFault::not_finite}};
     const Joints arm = map_.arm_of(map_.joints_of(axes));

@@ -92,6 +92,8 @@ public:
     [[nodiscard]] const std::optional<SixJoints::Table>& rows() const noexcept { return rows_; }
     /// Is each inverse a closed form? False: Newton's method ends it.
     [[nodiscard]] bool closed_form() const noexcept;
+    /// Are there axes that have no pose: rods of a delta that do not meet?
+    [[nodiscard]] bool may_not_close() const noexcept;
 
 private:
     using Arm = std::variant<Cartesian, BeamGantry, Scara, Palletizer, RotaryDelta, LinearDelta, SixArm>;

@@ -85,6 +85,8 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     }
     const StretchProgress at = exchange_.progress();
     const bool stand = wish.motion == PathWish::Motion::stand || wish.velocity_factor <= 0;
+    if (stand != stood_) skip_ = 0;  // where no other motion was found a halt may well be
+    stood_ = stand;
     const int begin = border(at);
     const bool at_rest = begin >= static_cast<int>(active_.plan.pieces.size());
     RunTask task;
@@ -96,6 +98,11 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         task.velocity = piece.velocity;
         task.acceleration = piece.slope;
         former = &active_.plan.shape;
+        // Who brakes for a lowered override would come to that velocity first, and creep to the end of the braking.
+        if (stand) {
+            const double most = along_limits(curve.at(task.from, CurveSide::after), limits_, 1).velocity;
+            task.velocity_factor = std::max(task.velocity_factor, std::min(task.velocity / most, 1.0));
+        }
     }
     if (stand) {
         if (at_rest || active_.stands) return PathAnswer::nothing_new;

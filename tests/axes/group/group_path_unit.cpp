@@ -369,6 +369,21 @@ TEST(GroupPath, AStopInALongCruiseDoesNotWaitForItsEnd) {
     }
 }
 
+// A halt that comes while the path still brakes for an override of nearly nothing: it stands as soon as any other, and does not creep there.
+TEST(GroupPath, AHaltBehindALoweredOverrideDoesNotCreep) {
+    for (const int later : {1, 30, 60, 90, 130}) {
+        GroupRig rig(2);
+        rig.enable();
+        (void)rig.give(line({500, 0}, 100));
+        rig.run(500);
+        ASSERT_GT(rig.view().path_velocity, 99);
+        ASSERT_EQ(rig.set(Override{1e-5, 1, 1}), ErrorId::none);
+        rig.run(later);
+        (void)rig.give(simply(GroupCommandKind::interrupt));
+        EXPECT_TRUE(rig.until([&] { return rig.view().interrupted; }, 500)) << later;
+    }
+}
+
 // Interrupted, overridden and stopped in the middle of a rounded corner: the path stays.
 TEST(GroupPath, HoldingInACurveStaysOnTheCurve) {
     for (const int cycle : {450, 520, 560, 600, 640}) {

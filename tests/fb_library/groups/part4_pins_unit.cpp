@@ -49,6 +49,7 @@ std::string direction_of(const Pin& pin) {
 bool same_type(const std::string& standard, std::string_view ours) {
     if (standard == "REAL") return ours == "LREAL";
     if (standard == "ARRAY OF REAL") return ours == "ARRAY OF LREAL";
+    if (standard == "ARRAY[6] OF REAL") return ours == "ARRAY[6] OF LREAL";
     if (standard == "WORD") return ours == "WORD" || ours == "UINT";
     return standard == ours;
 }

@@ -1,0 +1,57 @@
+#pragma once
+// Who holds a group's jog, and which way: what the group asks in each cycle while one is active. The jog itself is a straight path (jog_shape.hpp), its
+// end a halt on that path; another direction is another path, from where the first one has come to rest. Real-time safe.
+
+#include <optional>
+
+#include "axes/group/group_members.hpp"
+#include "axes/group/group_view.hpp"
+
+namespace taktwerk::axes {
+
+class GroupJog {
+public:
+    /// A direction that is away from the one that is gone by no more than this (rad) does not stop it: a hand on a stick is not still.
+    static constexpr double steady = 0.05;
+
+    /// Within that.
+    [[nodiscard]] static bool same_way(const JointVector& a, const JointVector& b) noexcept;
+
+    /// Errors: invalid_parameter (a direction that is none, beyond -1..1, of a slot without a member; a negative reach; ACS of a vector), invalid_velocity
+    /// (there are no jogging dynamics for it), invalid_override.
+    [[nodiscard]] static ErrorId refuse(const GroupCommand& command, const JoggingDynamics& dynamics, const GroupMembers& members) noexcept;
+    [[nodiscard]] static ErrorId refuse(const HoldJog& held) noexcept;
+
+    /// It is pressed: `lease` from now on.
+    void press(const GroupCommand& command, Duration lease) noexcept;
+    void hold(const HoldJog& held) noexcept;
+    void pass(Duration period) noexcept { silent_ += period; }
+
+    /// Nobody holds it any more.
+    [[nodiscard]] bool expired() const noexcept { return silent_ > lease_; }
+    /// It is to stop, for good or for another direction.
+    [[nodiscard]] bool stops() const noexcept;
+    /// It is to stop for good.
+    [[nodiscard]] bool released() const noexcept;
+    /// What is on the way, once at rest, to be gone next; `here`: where the members stand. `direction` becomes the one to be gone.
+    void turn(JointVector& direction, const JointVector& here) noexcept;
+    [[nodiscard]] const JointVector& pressed_at() const noexcept { return pressed_at_; }
+
+    /// With the group's own.
+    [[nodiscard]] Override factors(const Override& of_group) const noexcept;
+
+private:
+    HoldJog held_{};
+    JointVector gone_{};        // the direction that is on the way
+    JointVector pressed_at_{};  // where the members were when that began first
+    bool begun_ = false;
+    Duration silent_{}, lease_{};
+};
+
+/// Above 0 is written, the others stay. Errors, with nothing written: invalid_velocity, invalid_dynamics (not finite).
+[[nodiscard]] ErrorId write_jogging(const JoggingDynamics& wanted, JoggingDynamics& kept) noexcept;
+
+/// The shortest patience of the members with a jog that nobody renews.
+[[nodiscard]] Duration jog_lease_of(const GroupMembers& members) noexcept;
+
+}  // namespace taktwerk::axes
