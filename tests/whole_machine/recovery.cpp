@@ -125,7 +125,13 @@ bool recover(Rig& rig, Hands& hands) {
     }
     if (!power_and_move(rig)) return false;
     // What is left says nothing any more once it is acknowledged.
-    for (int i = 0; i < 20 && !rig.standing().empty(); ++i) {
+    // A cable that lost its link is told for a minute, and nobody can take that back (where the host slept meanwhile it has seen no more of it).
+    constexpr int half_seconds = 20, of_a_minute = 130;
+    const auto lasts = [&](int i) {
+        const auto left = rig.standing();
+        return !left.empty() && i < (left.find("cable_loses_link") == std::string::npos ? half_seconds : of_a_minute);
+    };
+    for (int i = 0; lasts(i); ++i) {
         (void)rig.submit(runtime::OperatorAction::acknowledge_alarms);
         (void)rig.submit(runtime::OperatorAction::reset);
         rig.run(500ms);
