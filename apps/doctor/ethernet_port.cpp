@@ -62,6 +62,16 @@ std::optional<std::uint32_t> value_of(const EthernetSettings& settings, Ethernet
     return std::nullopt;
 }
 
+std::optional<std::vector<std::string>> KernelEthernetPorts::names() const {
+    struct if_nameindex* const all = ::if_nameindex();
+    if (all == nullptr) return std::nullopt;
+    std::vector<std::string> found;
+    for (const auto* one = all; one->if_index != 0; ++one) found.emplace_back(one->if_name);
+    ::if_freenameindex(all);
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
 EthernetSettings KernelEthernetPorts::read(const std::string& interface) const {
     EthernetSettings s;
     ethtool_drvinfo driver;

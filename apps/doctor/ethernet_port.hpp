@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -28,6 +29,8 @@ enum class EthernetKnob : std::uint8_t { receive_us, send_us, adaptive_receive, 
 class EthernetPorts {
 public:
     virtual ~EthernetPorts() = default;
+    /// All network interfaces that a socket of this process can have, sorted; nothing: not known.
+    [[nodiscard]] virtual std::optional<std::vector<std::string>> names() const { return std::nullopt; }
     [[nodiscard]] virtual EthernetSettings read(const std::string& interface) const = 0;
     /// Errors: doctor.ethernet.
     [[nodiscard]] virtual Result<void> set(const std::string& interface, EthernetKnob knob, std::uint32_t value) = 0;
@@ -36,6 +39,7 @@ public:
 /// Of this computer.
 class KernelEthernetPorts final : public EthernetPorts {
 public:
+    [[nodiscard]] std::optional<std::vector<std::string>> names() const override;
     [[nodiscard]] EthernetSettings read(const std::string& interface) const override;
     [[nodiscard]] Result<void> set(const std::string& interface, EthernetKnob knob, std::uint32_t value) override;
 };

@@ -76,10 +76,11 @@ void measure(Examination& seen, Duration lasts) {
     SystemClock clock;
     std::unique_ptr<ecat::RawSocketTransport> bus;
     if (!seen.interface.empty()) {
-        const auto busy = std::any_of(seen.findings.begin(), seen.findings.end(), [](const Finding& f) {
-            return f.code == "port.other_master" || f.code == "port.missing" || f.code == "port.bridged";
-        });
-        if (busy) m.no_trips = "see below why this interface is not free";
+        const auto is = [&](std::string_view code) {
+            return std::any_of(seen.findings.begin(), seen.findings.end(), [&](const Finding& f) { return f.code == code; });
+        };
+        if (is("port.missing")) m.no_trips = fmt::format("there is no {} here, see below", seen.interface);
+        else if (is("port.other_master") || is("port.bridged")) m.no_trips = "see below why this interface is not free";
         else bus = bus_at(seen.interface, clock, m.no_trips);
         if (bus) m.trips.emplace();
     }

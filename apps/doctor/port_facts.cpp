@@ -69,6 +69,32 @@ std::vector<int> irqs(const HostFiles& files, const std::string& folder, const s
     return all;
 }
 
+void facts_of_one_that_is_here(PortFacts& p, const HostFiles& files, const EthernetPorts& ports) {
+    const auto folder = "/sys/class/net/" + p.name;
+    p.index = static_cast<int>(files.number(folder + "/ifindex").value_or(0));
+    const auto flags = std::strtoul(files.text(folder + "/flags").value_or("0").c_str(), nullptr, 16);
+    p.up = (flags & 1) != 0;  // IFF_UP
+    p.carrier = files.number(folder + "/carrier").value_or(0) != 0;
+    p.megabit = std::max(0.0, files.number(folder + "/speed").value_or(0));
+    p.duplex = files.text(folder + "/duplex").value_or("");
+    p.bus = files.link_name(folder + "/device/subsystem");
+    p.master = files.link_name(folder + "/master");
+    p.ethernet = ports.read(p.name);
+    if (p.ethernet.driver.empty()) p.ethernet.driver = files.link_name(folder + "/device/driver");
+    p.irqs = irqs(files, folder, p.name);
+    for (const int irq : p.irqs)
+        for (const int cpu : cpu_list(files.text(fmt::format("/proc/irq/{}/smp_affinity_list", irq)).value_or("")))
+            if (std::find(p.irq_cpus.begin(), p.irq_cpus.end(), cpu) == p.irq_cpus.end()) p.irq_cpus.push_back(cpu);
+    std::sort(p.irq_cpus.begin(), p.irq_cpus.end());
+    for (const auto& row : table(files, "/proc/net/route")) p.routed = p.routed || (!row.empty() && row.front() == p.name);
+    for (const auto& row : table(files, "/proc/net/if_inet6"))
+        if (row.size() == 6 && row.back() == p.name) p.ipv6_addresses.push_back(row.front());
+    if (const auto off = files.number("/proc/sys/net/ipv6/conf/" + p.name + "/disable_ipv6")) p.ipv6 = *off == 0;
+    p.managers = managers(files, p);
+    for (const auto& row : table(files, "/proc/net/packet"))  // sk RefCnt Type Proto Iface R Rmem User Inode
+        p.other_master = p.other_master || (row.size() >= 5 && row[3] == "88a4" && std::atoi(row[4].c_str()) == p.index);
+}
+
 }  // namespace
 
 PortFacts port_facts(const HostFiles& files, const EthernetPorts& ports, const std::string& interface) {
@@ -79,30 +105,14 @@ PortFacts port_facts(const HostFiles& files, const EthernetPorts& ports, const s
     const bool plain =
         !interface.empty() && interface.front() != '.' &&
         interface.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") == std::string::npos;
-    p.exists = plain && files.exists(folder);
-    if (!p.exists) return p;
-    p.index = static_cast<int>(files.number(folder + "/ifindex").value_or(0));
-    const auto flags = std::strtoul(files.text(folder + "/flags").value_or("0").c_str(), nullptr, 16);
-    p.up = (flags & 1) != 0;  // IFF_UP
-    p.carrier = files.number(folder + "/carrier").value_or(0) != 0;
-    p.megabit = std::max(0.0, files.number(folder + "/speed").value_or(0));
-    p.duplex = files.text(folder + "/duplex").value_or("");
-    p.bus = files.link_name(folder + "/device/subsystem");
-    p.master = files.link_name(folder + "/master");
-    p.ethernet = ports.read(interface);
-    if (p.ethernet.driver.empty()) p.ethernet.driver = files.link_name(folder + "/device/driver");
-    p.irqs = irqs(files, folder, interface);
-    for (const int irq : p.irqs)
-        for (const int cpu : cpu_list(files.text(fmt::format("/proc/irq/{}/smp_affinity_list", irq)).value_or("")))
-            if (std::find(p.irq_cpus.begin(), p.irq_cpus.end(), cpu) == p.irq_cpus.end()) p.irq_cpus.push_back(cpu);
-    std::sort(p.irq_cpus.begin(), p.irq_cpus.end());
-    for (const auto& row : table(files, "/proc/net/route")) p.routed = p.routed || (!row.empty() && row.front() == interface);
-    for (const auto& row : table(files, "/proc/net/if_inet6"))
-        if (row.size() == 6 && row.back() == interface) p.ipv6_addresses.push_back(row.front());
-    if (const auto off = files.number("/proc/sys/net/ipv6/conf/" + interface + "/disable_ipv6")) p.ipv6 = *off == 0;
-    p.managers = managers(files, p);
-    for (const auto& row : table(files, "/proc/net/packet"))  // sk RefCnt Type Proto Iface R Rmem User Inode
-        p.other_master = p.other_master || (row.size() >= 5 && row[3] == "88a4" && std::atoi(row[4].c_str()) == p.index);
+    const bool shown = plain && files.exists(folder);
+    const auto names = ports.names();
+    const bool to_be_had = names ? std::find(names->begin(), names->end(), interface) != names->end() : shown;
+    if (shown) p.place = to_be_had ? PortPlace::here : PortPlace::elsewhere;
+    else if (plain && to_be_had) p.place = PortPlace::unseen;
+    if (p.place == PortPlace::here) facts_of_one_that_is_here(p, files, ports);
+    else p.others = names;
+    if (p.others) std::erase(*p.others, "lo");
     return p;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // A network interface that an EtherCAT bus shall be at, and who else has something to do with it. Facts only. Not real-time.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,9 +11,19 @@
 
 namespace taktwerk::apps {
 
+/// Sockets are of the network namespace of this process, what /sys/class/net shows of the one in which /sys was mounted: mostly the same.
+enum class PortPlace : std::uint8_t {
+    nowhere,
+    here,
+    unseen,     ///< sockets can have it, and /sys does not show it
+    elsewhere,  ///< /sys shows it, and no socket can have it
+};
+
 struct PortFacts {
     std::string name;
-    bool exists = false, up = false, carrier = false;
+    PortPlace place = PortPlace::nowhere;            ///< the rest is known of one that is here
+    std::optional<std::vector<std::string>> others;  ///< not here: what sockets can have, the loopback aside; nothing: not known
+    bool up = false, carrier = false;
     int index = 0;
     double megabit = 0;  ///< of the link; 0: not known
     std::string duplex;

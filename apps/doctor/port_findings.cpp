@@ -147,13 +147,33 @@ void others(std::vector<Finding>& out, const PortFacts& p, const Wanted& wanted)
         out.push_back({"port.alone", Severity::good, 0, "nobody else uses " + p.name, "", "", ""});
 }
 
+/// Where frames are not, or nobody can say from here what they meet.
+Finding not_here(const PortFacts& p) {
+    const auto go_there = fmt::format("ip netns exec NAME taktwerk doctor --nic {}", p.name);
+    if (p.place == PortPlace::unseen)
+        return of(Severity::warning, "port.unseen",
+                  fmt::format("{} is in the network namespace of this process, and /sys shows another one", p.name),
+                  "its link, driver, interrupts and who else uses it are not looked at; round trips are measured",
+                  go_there + "      # has the /sys of its namespace");
+    const bool alone = p.others && p.others->empty();
+    const auto what =
+        p.place == PortPlace::elsewhere
+            ? fmt::format("{} is in another network namespace: /sys shows it, and no socket of this process can have it", p.name)
+            : fmt::format("there is no network interface {}", p.name);
+    if (alone)
+        return of(Severity::unfit, "port.missing", what + "; that of this process has the loopback alone", "no bus",
+                  fmt::format("{}      # where the port is, or bring it here:\nip link set {} netns NAME_OR_PID", go_there, p.name));
+    return of(Severity::unfit, "port.missing", what, "no bus",
+              p.others ? fmt::format("--nic with one of those that there are: {}", fmt::join(*p.others, ", "))
+                       : std::string("`ip -br link` lists those that there are"));
+}
+
 }  // namespace
 
 std::vector<Finding> port_findings(const PortFacts& facts, const Wanted& wanted) {
     std::vector<Finding> all;
-    if (!facts.exists) {
-        all.push_back(of(Severity::unfit, "port.missing", "there is no network interface " + facts.name, "no bus",
-                         "`ip -br link` lists those that there are"));
+    if (facts.place != PortPlace::here) {
+        all.push_back(not_here(facts));
         return all;
     }
     link(all, facts);

@@ -14,6 +14,7 @@
 #include "apps/machine/master_gone.hpp"
 #include "apps/machine/modbus_asked.hpp"
 #include "apps/machine/modbus_offer.hpp"
+#include "apps/machine/problem_json.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -39,16 +40,6 @@ struct CheckOptions {
     std::string file;
     bool json = false;
 };
-
-Json problem_json(const Error& error) {
-    return Json{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
-}
-
-Json problems_json(const std::vector<Error>& errors) {
-    auto out = Json::array();
-    for (const auto& error : errors) out.push_back(problem_json(error));
-    return out;
-}
 
 std::string homing_text(const axes::HomingConfig& homing) {
     switch (homing.kind) {
@@ -442,7 +433,7 @@ Json views_json(const std::vector<hmi::View>& views) {
 }
 
 int fail(const CheckOptions& options, const std::vector<Error>& errors) {
-    if (options.json) fmt::print("{}\n", Json{{"ok", false}, {"errors", problems_json(errors)}}.dump(2));
+    if (options.json) fmt::print("{}\n", failure_json(errors).dump(2));
     else print_errors(errors);
     return exit_bad_file;
 }

@@ -14,6 +14,7 @@
 #include "apps/machine/load.hpp"
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/machine_recording.hpp"
+#include "apps/machine/problem_json.hpp"
 #include "apps/machine/trace_csv.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/count_text.hpp"
@@ -68,6 +69,19 @@ const char* word_of_end(RecordingEnd end) {
     return "";
 }
 
+/// `others`: in what this taktwerk, machine or program is another one than that of the recording.
+int fail(const ReplayOptions& options, int code, const std::vector<Error>& errors, const std::vector<std::string>& others = {}) {
+    if (options.json) {
+        auto told = failure_json(errors);
+        if (!others.empty()) told["other"] = others;
+        fmt::print("{}\n", told.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+        return code;
+    }
+    print_errors(errors);
+    for (const auto& other : others) fmt::print(stderr, "{}\n", other);
+    return code;
+}
+
 struct ChannelCount {
     std::uint64_t records = 0, bytes = 0;
 };
@@ -94,20 +108,17 @@ void show_text(const RecordingReader& recording, const ChannelCounts& counts) {
         fmt::print("  {:<28} {:>10} records {:>12} bytes before they are compressed\n", name, count.records, count.bytes);
 }
 
-int show(RecordingReader& recording, bool json) {
+int show(RecordingReader& recording, const ReplayOptions& options) {
     ChannelCounts counts;
     for (;;) {
         const auto record = recording.next();
-        if (!record) {
-            print_error(record.error());
-            return exit_bad_file;
-        }
+        if (!record) return fail(options, exit_bad_file, {record.error()});
         if (!record->has_value()) break;
         auto& count = counts[recording.info().channels[(*record)->channel]];
         ++count.records;
         count.bytes += (*record)->bytes.size();
     }
-    if (json) show_json(recording, counts);
+    if (options.json) show_json(recording, counts);
     else show_text(recording, counts);
     return exit_ok;
 }
@@ -253,59 +264,47 @@ void say_state(Replay& replay) {
     for (std::size_t i = 0; i < outputs.size(); ++i) fmt::print("  output {} = {}\n", outputs[i], snapshot->outputs[i]);
 }
 
-int fail(const std::vector<Error>& errors, const std::vector<std::string>& others) {
-    print_errors(errors);
-    for (const auto& other : others) fmt::print(stderr, "{}\n", other);
-    return exit_bad_file;
-}
-
 int replay(const ReplayOptions& options) {
     math::set_stepping_thread_float_environment();
     auto loaded = RecordingReader::open(options.recording);
-    if (!loaded) return fail({loaded.error()}, {});
+    if (!loaded) return fail(options, exit_bad_file, {loaded.error()});
     auto& recording = **loaded;
-    if (options.show) return show(recording, options.json);
-    if (const auto wrong = wrong_until(options.until)) {
-        print_error(*wrong);
-        return exit_usage;
-    }
+    if (options.show) return show(recording, options);
+    if (const auto wrong = wrong_until(options.until)) return fail(options, exit_usage, {*wrong});
     const auto* written = fact(recording, "machine_file");
     const auto file = !options.machine.empty() ? options.machine : written != nullptr ? *written : std::string{};
     if (file.empty())
-        return fail({{"replay.not_of_a_machine", options.recording, "this recording does not say of which machine file it is",
-                      "give the machine file behind it"}},
-                    {});
+        return fail(options, exit_bad_file,
+                    {{"replay.not_of_a_machine", options.recording, "this recording does not say of which machine file it is",
+                      "give the machine file behind it"}});
     std::vector<std::string> inputs{options.recording, file};
     for (const auto& program : options.programs) inputs.push_back(program.substr(program.find('=') + 1));
-    if (const auto other = output_in_the_way(std::array{OutputFile{"--trace", options.trace}}, inputs)) {
-        print_error(*other);
-        return exit_usage;
-    }
+    if (const auto other = output_in_the_way(std::array{OutputFile{"--trace", options.trace}}, inputs))
+        return fail(options, exit_usage, {*other});
     if (std::error_code failed; options.machine.empty() && !std::filesystem::exists(file, failed))
-        return fail({{"replay.no_machine", file, "the machine file does not stand any more where it was recorded",
-                      "give it behind the recording: taktwerk replay RECORDING MACHINE.yaml"}},
-                    {});
+        return fail(options, exit_bad_file,
+                    {{"replay.no_machine", file, "the machine file does not stand any more where it was recorded",
+                      "give it behind the recording: taktwerk replay RECORDING MACHINE.yaml"}});
     const auto* simulated = fact(recording, "simulated");
     const config::FilesRead files;
-    auto machine_file = load(file, simulated == nullptr || *simulated == "yes");
-    if (!machine_file) return exit_bad_file;
-    auto& config = machine_file->machine;
+    auto read = read_machine(file, simulated == nullptr || *simulated == "yes");
+    if (const auto* errors = std::get_if<std::vector<Error>>(&read)) return fail(options, exit_bad_file, *errors);
+    auto& machine_file = std::get<LoadedFile>(read);
+    for (const auto& warning : machine_file.warnings) print_warning(warning);
+    auto& config = machine_file.machine;
     for (const auto& program : options.programs)
-        if (const auto wrong = put_program(config, program)) {
-            print_error(*wrong);
-            return exit_usage;
-        }
+        if (const auto wrong = put_program(config, program)) return fail(options, exit_usage, {*wrong});
     const RecordingInfo here{{}, facts_of(file, files, config, true)};
     auto others = other_facts(recording.info(), here);
     const auto until = options.until.empty() ? std::nullopt : time_of(options.until);
     auto made = Replay::make(std::move(config), recording);
-    if (const auto* errors = std::get_if<1>(&made)) return fail(*errors, others);
+    if (const auto* errors = std::get_if<1>(&made)) return fail(options, exit_bad_file, *errors, others);
     auto& replay = *std::get<0>(made);
 
     std::unique_ptr<TraceCsv> trace;
     if (!options.trace.empty()) {
         auto created = TraceCsv::create(options.trace, replay.machine().signals(), replay.machine().layout());
-        if (!created) return fail({created.error()}, {});
+        if (!created) return fail(options, exit_bad_file, {created.error()});
         trace = std::move(*created);
         trace->count_from(replay.start());
     }
@@ -323,9 +322,9 @@ int replay(const ReplayOptions& options) {
         reached = until ? replay.now() - replay.start() >= *until : stands(replay.machine(), options.until);
         going = going && !reached;
     }
-    if (step == Replay::Step::malformed) return fail({*replay.error()}, {});
+    if (step == Replay::Step::malformed) return fail(options, exit_bad_file, {*replay.error()});
     if (trace)
-        if (auto ok = trace->finish(); !ok) return fail({ok.error()}, {});
+        if (auto ok = trace->finish(); !ok) return fail(options, exit_bad_file, {ok.error()});
     const int code = report.end(replay, step == Replay::Step::ended ? how_it_ends(recording.end()) : std::string{}, reached);
     if (!options.until.empty() && !options.json) {
         if (!reached)
@@ -349,7 +348,7 @@ void add_replay(CLI::App& app, Action& action) {
     sub->add_option("--program", options->programs,
                     "with this program in the place of the recorded one: FILE.so, or NAME=FILE.so. What differs is told and is no failure");
     sub->add_flag("--show", options->show, "say what is in the recording, and replay nothing");
-    sub->add_flag("--json", options->json, "events and result as JSON, one object a line; with --show one object");
+    sub->add_flag("--json", options->json, "events and result as JSON, one object a line, errors too; with --show one object");
     sub->add_flag("--quiet", options->quiet, "say only the result");
     sub->callback([&action, options] { action = [options] { return replay(*options); }; });
 }

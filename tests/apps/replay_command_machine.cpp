@@ -315,6 +315,35 @@ TEST_F(ReplayCommand, AFullDiskEndsTheRecordingAndNotTheMachine) {
     EXPECT_GT(std::filesystem::file_size(path("run.twrec")), 400'000u);
 }
 
+// One object a line on standard output, whatever goes wrong, and the exit code that it has without --json.
+TEST_F(ReplayCommand, WithJsonAnErrorIsJsonToo) {
+    record("demo.yaml", "2s");
+    const auto of_standard_output = [&](const std::vector<std::string>& arguments, int code) {
+        std::vector<std::string> all{"sh", "-c", "exec \"$@\" 2>/dev/null", "sh", taktwerk, "replay"};
+        all.insert(all.end(), arguments.begin(), arguments.end());
+        Child child(all);
+        EXPECT_EQ(child.wait(120s), code) << child.text();
+        const auto json = nlohmann::json::parse(child.text(), nullptr, false);
+        EXPECT_TRUE(json.is_object()) << child.text();
+        if (!json.is_object()) return std::string{};
+        EXPECT_EQ(json.at("ok"), false);
+        const auto& error = json.at("errors").at(0);
+        EXPECT_FALSE(error.at("what").get<std::string>().empty());
+        EXPECT_TRUE(error.contains("subject") && error.contains("remedy"));
+        return error.at("code").get<std::string>();
+    };
+    const auto recording = path("run.twrec");
+    std::ofstream(path("no.yaml")) << "machine: [\n";
+    EXPECT_EQ(of_standard_output({path("none.twrec"), "--json"}, exit_bad_file), "recording.read");
+    EXPECT_EQ(of_standard_output({path("no.yaml"), "--json", "--show"}, exit_bad_file), "recording.not_a_recording");
+    EXPECT_EQ(of_standard_output({recording, "--json", "--until", "no_alarm"}, exit_usage), "usage.until");
+    EXPECT_EQ(of_standard_output({recording, "--json", "--program", "nobody=x.so"}, exit_usage), "usage.program");
+    EXPECT_EQ(of_standard_output({recording, path("gone.yaml"), "--json"}, exit_bad_file), "config.no_file");
+    EXPECT_NE(of_standard_output({recording, path("no.yaml"), "--json"}, exit_bad_file), "");
+    EXPECT_EQ(of_standard_output({recording, "--json", "--trace", recording}, exit_usage), "usage.output");
+    EXPECT_NE(of_standard_output({recording, "--json", "--trace", path("no/folder/x.csv")}, exit_bad_file), "");
+}
+
 TEST_F(ReplayCommand, KilledAtAnyInstantAllButTheLastSecondIsThere) {
     const auto file = altered("demo.yaml", "lcm: { enabled: true,", "socket: '" + path("socket") + "'\n  lcm: { enabled: false,");
     for (const auto after : {2600ms, 3100ms, 3450ms}) {

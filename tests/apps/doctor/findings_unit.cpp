@@ -220,6 +220,34 @@ TEST(DoctorPort, OneThatIsNotThereIsSaidAndNothingElse) {
     test::free_port(host);
     for (const auto* name : {"eth7", "../eth1", "", "eth1/", "a\"b"})
         EXPECT_THAT(bad(of_port(host, {}, name)), ElementsAre("port.missing")) << name;
+    MemoryPorts ports;
+    ports.sockets_have = {"eth0", "eth1"};
+    EXPECT_THAT(bad(of_port(host, ports, "eth7")), ElementsAre("port.missing"));
+    EXPECT_THAT(find(of_port(host, ports, "eth7"), "port.missing")->remedy, HasSubstr("eth0, eth1"));
+}
+
+// What sockets can have and what /sys shows are two things in a network namespace of one's own. Each way round is said as it is.
+TEST(DoctorPort, WhatIsInAnotherNetworkNamespaceIsSaid) {
+    HostTree host;
+    test::free_port(host);
+    MemoryPorts bare;
+    bare.sockets_have.emplace();
+    const auto there = of_port(host, bare);
+    EXPECT_THAT(bad(there), ElementsAre("port.missing"));
+    EXPECT_EQ(find(there, "port.alone"), nullptr) << "nothing of what /sys shows is praised";
+    EXPECT_THAT(find(there, "port.missing")->found, AllOf(HasSubstr("another network namespace"), HasSubstr("the loopback alone")));
+    EXPECT_THAT(find(there, "port.missing")->remedy,
+                AllOf(HasSubstr("ip netns exec NAME taktwerk doctor --nic eth1"), HasSubstr("ip link set eth1 netns")));
+    const auto gone = of_port(host, bare, "eth7");
+    EXPECT_THAT(find(gone, "port.missing")->found, AllOf(HasSubstr("there is no network interface eth7"), HasSubstr("the loopback alone")));
+
+    MemoryPorts inside;
+    inside.sockets_have = {"v0"};
+    const auto here = of_port(host, inside, "v0");
+    EXPECT_THAT(bad(here), ElementsAre("port.unseen"));
+    EXPECT_THAT(find(here, "port.unseen")->remedy, HasSubstr("ip netns exec"));
+    EXPECT_EQ(find(here, "port.unseen")->severity, Severity::warning) << "it may be as good as any";
+    EXPECT_THAT(bad(of_port(host, inside, "../v0")), ElementsAre("port.missing")) << "no name becomes one by that";
 }
 
 TEST(DoctorPort, SwitchedOffWithoutLinkAndAtASwitch) {

@@ -137,8 +137,10 @@ class MemoryPorts final : public EthernetPorts {
 public:
     std::map<std::string, EthernetSettings> settings;
     bool refuses = false;
-    std::uint32_t least_us = 0;  ///< a driver that takes no less, and says so only when it is asked
+    std::optional<std::vector<std::string>> sockets_have;  ///< nothing: what the tree shows
+    std::uint32_t least_us = 0;                            ///< a driver that takes no less, and says so only when it is asked
 
+    [[nodiscard]] std::optional<std::vector<std::string>> names() const override { return sockets_have; }
     [[nodiscard]] EthernetSettings read(const std::string& interface) const override {
         const auto found = settings.find(interface);
         return found == settings.end() ? EthernetSettings{} : found->second;
