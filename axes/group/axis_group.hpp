@@ -96,7 +96,7 @@ private:
     GroupMembers members_;
     GroupQueue queue_;
     PathRun run_;
-    GroupView view_;      // and its settings: override, dynamics, error, reset
+    GroupView view_;  // and its settings: override, dynamics, error, reset
     GroupEquipment equipment_;
     JointVector hold_{};  // where the members stand without a run
     GroupState state_ = GroupState::GroupDisabled;

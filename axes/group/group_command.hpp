@@ -112,7 +112,7 @@ struct WriteDynamics {
     PathDynamics dynamics{};
 };
 /// AddMember ... | MC_GroupSetOverride | of tools and loads
-using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, SelectTool, SelectPayload,
-                                  WritePayload, WriteBodies>;
+using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, SelectTool,
+                                  SelectPayload, WritePayload, WriteBodies>;
 
 }  // namespace taktwerk::axes

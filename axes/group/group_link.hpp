@@ -40,7 +40,7 @@ struct GroupOrder {
     GroupCommand command{};  ///< target by rank; dynamics resolved
     MemberVector target{};
     CommandPlace place{};  ///< as it was accepted
-    bool joins = false;  ///< may be blended with the one before it
+    bool joins = false;    ///< may be blended with the one before it
 
     bool stands = false;
     Override factors{};
