@@ -7,6 +7,7 @@
 #include "fb_library/fieldbus/sdo.hpp"
 #include "fb_library/groups/group_administration.hpp"
 #include "fb_library/groups/group_arm_blocks.hpp"
+#include "fb_library/groups/group_bodies.hpp"
 #include "fb_library/groups/group_frames.hpp"
 #include "fb_library/groups/group_jogging.hpp"
 #include "fb_library/groups/group_limits.hpp"

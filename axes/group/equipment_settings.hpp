@@ -32,8 +32,8 @@ struct WriteBodies {
 struct SetGroupPosition {
     MC_CoordSystem frame = mcACS;
     bool relative = false;
-    JointVector target{};      ///< as a command's
-    Configuration wanted{};    ///< of the arm, in other frames than ACS
+    JointVector target{};    ///< as a command's
+    Configuration wanted{};  ///< of the arm, in other frames than ACS
 };
 
 }  // namespace taktwerk::axes

@@ -58,7 +58,8 @@ SixNumbers turned_back(const Pose& frame, const SixNumbers& v) noexcept {
 
 }  // namespace
 
-PlaceAnswer transformed(const PlaceQuestion& question, const GroupView& view, const GroupEquipment& equipment, const Kinematics* arm) noexcept {
+PlaceAnswer transformed(const PlaceQuestion& question, const GroupView& view, const GroupEquipment& equipment,
+                        const Kinematics* arm) noexcept {
     PlaceAnswer answer;
     for (const auto frame : {question.from, question.to})
         if (const auto error = refuse(frame, view); error != ErrorId::none) return {error, {}, false};
@@ -118,11 +119,11 @@ SixAnswer velocity_in(MC_CoordSystem frame, MC_Source source, const GroupView& v
     if (!view.tool_known) return {ErrorId::out_of_reach, {}};
     const bool actual = source == mcActualValue;
     const Pose tool = pose_of_numbers(actual ? view.tool_actual : view.tool_set);
-    return {ErrorId::none,
-            turned_back(Seen(equipment, tool).of(frame), actual ? view.tool_actual_velocity : view.tool_velocity)};
+    return {ErrorId::none, turned_back(Seen(equipment, tool).of(frame), actual ? view.tool_actual_velocity : view.tool_velocity)};
 }
 
-PlaceAnswer members_for(const SetGroupPosition& wanted, const GroupView& view, const GroupEquipment& equipment, const Kinematics* arm) noexcept {
+PlaceAnswer members_for(const SetGroupPosition& wanted, const GroupView& view, const GroupEquipment& equipment,
+                        const Kinematics* arm) noexcept {
     if (const auto error = refuse(wanted.frame, view); error != ErrorId::none) return {error, {}, false};
     PlaceAnswer answer;
     if (wanted.frame == mcACS) {
@@ -140,8 +141,8 @@ PlaceAnswer members_for(const SetGroupPosition& wanted, const GroupView& view, c
     Pose goal = composed(frame, given);
     if (wanted.relative) {  // as a relative move: the distance and the turn are in the frame's directions
         const Eigen::Quaterniond f = orientation_of(frame);
-        goal = pose_of(position_of(here.pose) + f * position_of(given),
-                       f * orientation_of(given) * f.conjugate() * orientation_of(here.pose));
+        goal =
+            pose_of(position_of(here.pose) + f * position_of(given), f * orientation_of(given) * f.conjugate() * orientation_of(here.pose));
     }
     const auto stand = arm->inverse(goal, tool, wanted.wanted, first_joints(view.actual_position));
     if (!stand.ok()) return {error_of_miss(stand.miss), {}, false};

@@ -42,7 +42,8 @@ struct SixAnswer {
     SixNumbers six{};
 };
 /// Likewise, in the directions of the frame: u/s, and rad/s about them. mcCommandedValue: not_supported.
-[[nodiscard]] SixAnswer velocity_in(MC_CoordSystem frame, MC_Source source, const GroupView& view, const GroupEquipment& equipment) noexcept;
+[[nodiscard]] SixAnswer velocity_in(MC_CoordSystem frame, MC_Source source, const GroupView& view,
+                                    const GroupEquipment& equipment) noexcept;
 
 /// Where the members are to be said to be, by place. Errors as of transformed().
 [[nodiscard]] PlaceAnswer members_for(const SetGroupPosition& wanted, const GroupView& view, const GroupEquipment& equipment,

@@ -23,7 +23,21 @@ inline constexpr std::size_t group_state_count = 6;
 
 /// In which coordinates a position is meant: the axes themselves, the machine, the world, a product (eight of them; mcPCS is the first), flange or
 /// fixture, the tool.
-enum MC_CoordSystem : std::uint8_t { mcACS, mcMCS, mcWCS, mcPCS, mcFCS, mcTCS, mcPCS_2, mcPCS_3, mcPCS_4, mcPCS_5, mcPCS_6, mcPCS_7, mcPCS_8 };
+enum MC_CoordSystem : std::uint8_t {
+    mcACS,
+    mcMCS,
+    mcWCS,
+    mcPCS,
+    mcFCS,
+    mcTCS,
+    mcPCS_2,
+    mcPCS_3,
+    mcPCS_4,
+    mcPCS_5,
+    mcPCS_6,
+    mcPCS_7,
+    mcPCS_8
+};
 inline constexpr MC_CoordSystem mcPCS_1 = mcPCS;
 inline constexpr std::size_t product_frames = 8;
 [[nodiscard]] constexpr bool is_product(MC_CoordSystem frame) noexcept { return frame == mcPCS || (frame >= mcPCS_2 && frame <= mcPCS_8); }

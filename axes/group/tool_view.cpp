@@ -12,8 +12,7 @@ Joints first_of(const JointVector& values) noexcept {
     return joints;
 }
 
-std::array<double, 6> velocity_of(const Kinematics& arm, const Pose& tool, const JointVector& at,
-                                  const JointVector& velocity) noexcept {
+std::array<double, 6> velocity_of(const Kinematics& arm, const Pose& tool, const JointVector& at, const JointVector& velocity) noexcept {
     Eigen::Matrix<double, 6, 1> q;
     for (std::size_t i = 0; i < max_joints; ++i) q[static_cast<Eigen::Index>(i)] = i < arm.joint_count() ? velocity[i] : 0;
     const Eigen::Matrix<double, 6, 1> v = arm.jacobian(first_of(at), tool) * q;

@@ -8,7 +8,7 @@
 
 namespace taktwerk::axes {
 
-/// A rigid body, in the frame of the tool's point (TCP). kg, the machine's unit of length. No set-point depends on it: what loads a drive
+/// A rigid body, in the frame of the tool's point (TCP). kg, kg m2, places in the machine's unit of length. No set-point depends on it: what loads a drive
 /// may carry is the drive's feed-forward's matter. Numbers stay as they were written, so that who reads them finds them.
 struct RigidBody {
     double mass = 0;

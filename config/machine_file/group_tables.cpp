@@ -2,34 +2,21 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "axes/group/written_pose.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "config/machine_file/group_arm.hpp"
+#include "config/machine_file/group_equipment_tables.hpp"
+#include "config/machine_file/group_quantities.hpp"
 #include "config/reading/codecs.hpp"
 
 namespace taktwerk::config {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-
-/// rad, written in any unit of angles.
-Codec<double> angle() {
-    Codec<double> c = quantity(Dimension::angle);
-    c.read = [read = c.read](Reader& reader, const Node& node, double& out) {
-        double degrees = 0;
-        const bool good = read(reader, node, degrees);
-        if (good) out = degrees * degree;
-        return good;
-    };
-    c.show = [](const double& rad) { return show_number(rad / degree) + " deg"; };
-    return c;
-}
-
-Codec<double> length() { return quantity(Dimension::position); }
+Codec<double> angle() { return angle_in_rad(); }
+Codec<double> length() { return length_of_group(); }
 
 template <class Shape>
 Table<Shape> shape_table(std::string title, std::string doc, std::vector<Field<Shape>> fields) {
@@ -232,11 +219,13 @@ Table<GroupEntry> group_table() {
     f.push_back(field_via<G>(
         "kinematics", std::move(arm), [](G& g, const ArmEntry& written) { g.arm = std::make_shared<const ArmEntry>(written); },
         "the arm that they are", "none: ACS alone"));
+    for (auto& equipment : equipment_fields()) f.push_back(std::move(equipment));
     table.before = [](Reader& reader, const Node& node, G& g) {
         const auto* unit = node.find("unit");
         const auto& known = axis_units();
         reader.axis_unit = unit != nullptr && std::find(known.begin(), known.end(), unit->text) != known.end() ? unit->text : g.unit;
     };
+    table.after = [](Reader& reader, const Node& node, G& g) { equip(reader, node, g); };
     return table;
 }
 

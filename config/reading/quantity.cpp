@@ -105,7 +105,7 @@ Scale motion_scale(std::string_view unit, int order, std::string_view axis_unit)
 
 bool is_any_unit(std::string_view unit) {
     if (find(times, unit)) return true;
-    for (const auto* known : {"Hz", "kHz", "MHz", "Nm", "kgm2", "Nms/rad", "ppm", "V", "mV", "cycle", "cycles", "%"})
+    for (const auto* known : {"Hz", "kHz", "MHz", "Nm", "kgm2", "kg", "Nms/rad", "ppm", "V", "mV", "cycle", "cycles", "%"})
         if (unit == known) return true;
     return motion_scale(unit, 0, "mm").fit != Scale::Fit::not_a_unit;
 }
@@ -125,6 +125,7 @@ Scale plain_scale(std::string_view unit, Dimension dimension) {
         case Dimension::frequency: return either(is("Hz"), either(is("kHz", 1e3), is("MHz", 1e6)));
         case Dimension::torque: return either(is("Nm"), is("mNm", 1, 1e3));
         case Dimension::inertia: return either(is("kgm2"), is("kgcm2", 1, 1e4));
+        case Dimension::mass: return either(is("kg"), is("g", 1, 1e3));
         case Dimension::friction: return either(is("Nms/rad"), is("Nms"));
         case Dimension::ratio_ppm: return is("ppm");
         case Dimension::voltage: return either(is("V"), is("mV", 1, 1e3));
@@ -157,6 +158,7 @@ std::string unit_of(Dimension dimension, std::string_view axis_unit) {
         case Dimension::angle: return "deg";
         case Dimension::torque: return "Nm";
         case Dimension::inertia: return "kg m2";
+        case Dimension::mass: return "kg";
         case Dimension::friction: return "Nm s/rad";
         case Dimension::ratio_ppm: return "ppm";
         case Dimension::voltage: return "V";
@@ -172,6 +174,7 @@ std::string example_of(Dimension dimension, std::string_view axis_unit) {
         case Dimension::frequency: number = "50"; break;
         case Dimension::angle: number = "90"; break;
         case Dimension::inertia: number = "2e-4"; break;
+        case Dimension::mass: number = "1.2"; break;
         case Dimension::friction: number = "1e-3"; break;
         case Dimension::ratio_ppm: number = "20"; break;
         case Dimension::voltage: number = "0.1"; break;

@@ -20,6 +20,7 @@ enum class Dimension : std::uint8_t {
     jerk,
     torque,
     inertia,
+    mass,
     friction,
     ratio_ppm,
     voltage,
@@ -44,7 +45,7 @@ enum class QuantityProblem : std::uint8_t {
 
 struct Quantity {
     QuantityProblem problem = QuantityProblem::none;
-    double value = 0;  ///< seconds, Hz, degrees, u.., N m, kg m2, N m s/rad, ppm, V, cycles
+    double value = 0;  ///< seconds, Hz, degrees, u.., N m, kg m2, kg, N m s/rad, ppm, V, cycles
 };
 
 [[nodiscard]] Quantity parse_quantity(std::string_view text, Dimension dimension, std::string_view axis_unit);

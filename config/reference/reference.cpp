@@ -43,6 +43,7 @@ std::string quantity_pattern(const Shape& shape) {
         case Dimension::jerk: unit = "(um|mm|cm|m|deg|rad|rev)/s\\\\^?(3|³)"; break;
         case Dimension::torque: unit = "m?Nm"; break;
         case Dimension::inertia: unit = "kg ?c?m\\\\^?(2|²)"; break;
+        case Dimension::mass: unit = "k?g"; break;
         case Dimension::friction: unit = "Nm ?s(/rad)?"; break;
         case Dimension::ratio_ppm: unit = "ppm"; break;
         case Dimension::voltage: unit = "m?V"; break;

@@ -27,7 +27,8 @@ namespace detail {
     const auto& c = place.configuration;
     position.C.Cfg = {c.turns[0] != axes::any_turn, c.branch.shoulder == axes::Shoulder::front, c.branch.elbow == axes::Elbow::up,
                       c.branch.wrist == axes::Wrist::no_flip};
-    for (std::size_t i = 0; i < axes::max_joints; ++i) position.C.TurnInfo.ATurns[i] = c.turns[i] == axes::any_turn ? std::int8_t{0} : c.turns[i];
+    for (std::size_t i = 0; i < axes::max_joints; ++i)
+        position.C.TurnInfo.ATurns[i] = c.turns[i] == axes::any_turn ? std::int8_t{0} : c.turns[i];
     return position;
 }
 
@@ -129,7 +130,8 @@ struct MC_GroupTransformPosition : EnableBlock<MC_GroupTransformPosition> {
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::InputPosition>("", "A in ACS, else C"),
                          in<&Self::InputCoordSystem>("", "of the input"), in<&Self::OutputCoordSystem>("", "of the output"),
-                         out<&Self::CommandID>("", "0: it is no command"), out<&Self::OutputPosition>("", "A in ACS, else C with Cfg and turns"),
+                         out<&Self::CommandID>("", "0: it is no command"),
+                         out<&Self::OutputPosition>("", "A in ACS, else C with Cfg and turns"),
                          out<&Self::SingularPosition>("", "a path may not come so near to a singularity"), reading<Self>());
     }
     [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
@@ -166,10 +168,11 @@ struct MC_GroupSetPosition : GroupCommandBlock<MC_GroupSetPosition> {
 
     static constexpr std::string_view summary = "Says where the group is, without motion.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Position>("", "where it is: A in ACS, else C"),
-                         in<&Self::Relative>("", "Position is a distance"), grouped<&Self::CoordSystem>(),
-                         in<&Self::ExecutionMode>("", "without effect: in motion it is refused"), out<&Self::Done>("", "it is there"),
-                         grouped<&Self::Busy, &Self::CommandAccepted, &Self::CommandAborted, &Self::CommandID, &Self::Error, &Self::ErrorID>());
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Position>("", "where it is: A in ACS, else C"),
+            in<&Self::Relative>("", "Position is a distance"), grouped<&Self::CoordSystem>(),
+            in<&Self::ExecutionMode>("", "without effect: in motion it is refused"), out<&Self::Done>("", "it is there"),
+            grouped<&Self::Busy, &Self::CommandAccepted, &Self::CommandAborted, &Self::CommandID, &Self::Error, &Self::ErrorID>());
     }
     [[nodiscard]] axes::GroupCommand command() const noexcept {
         const auto six = detail::six_of(Position.C.Tcp);

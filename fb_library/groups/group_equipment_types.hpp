@@ -13,7 +13,7 @@ namespace taktwerk::fb {
 struct MC_COORD_REF {
     double X = 0, Y = 0, Z = 0, RX = 0, RY = 0, RZ = 0;
 };
-/// A rigid body. CenterOfGravity is also the orientation of the principal axes. kg, kg u2.
+/// A rigid body. CenterOfGravity is also the orientation of the principal axes. kg, kg m2.
 struct MC_RIGID_BODY_DYNAMIC_REF {
     MC_CART_REF CenterOfGravity{};
     double Mass = 0, IX = 0, IY = 0, IZ = 0;
@@ -47,7 +47,7 @@ struct MC_DHParameters {
 struct MC_JointInfo {
     struct Info {
         bool Rotary = false;
-        bool Clockwise = false;  ///< it counts against the arm's picture
+        bool Clockwise = false;   ///< it counts against the arm's picture
         double ZeroPosition = 0;  ///< rad or u: the arm's own where the joint says 0
     };
     std::uint8_t Joints = 0;
@@ -76,8 +76,8 @@ consteval auto when_set() {
 template <class Block>
 consteval auto frame_outcome() {
     return pin_table(out<&Block::Done>("", "later commands have it"),
-                     grouped<&Block::Busy, &Block::Active, &Block::CommandAccepted, &Block::CommandAborted, &Block::CommandID, &Block::Error,
-                             &Block::ErrorID>());
+                     grouped<&Block::Busy, &Block::Active, &Block::CommandAccepted, &Block::CommandAborted, &Block::CommandID,
+                             &Block::Error, &Block::ErrorID>());
 }
 
 [[nodiscard]] constexpr MC_COORD_REF coordinates_of(const axes::SixNumbers& s) noexcept { return {s[0], s[1], s[2], s[3], s[4], s[5]}; }
@@ -89,6 +89,11 @@ consteval auto frame_outcome() {
 }
 [[nodiscard]] constexpr MC_RIGID_BODY_DYNAMIC_REF pin_of(const axes::RigidBody& body) noexcept {
     return {place_of_six(body.centre), body.mass, body.inertia[0], body.inertia[1], body.inertia[2]};
+}
+
+/// A number of a tool or payload as pins have it; what is no number of one is 255, which nobody defines.
+[[nodiscard]] constexpr std::uint8_t number_of(std::int16_t pin) noexcept {
+    return pin >= 0 && pin < 255 ? static_cast<std::uint8_t>(pin) : std::uint8_t{255};
 }
 
 /// nullptr for an invalid handle, and where no groups are seen.

@@ -26,9 +26,10 @@ struct MC_SetCartesianTransform : GroupCommandBlock<MC_SetCartesianTransform> {
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::TransX>("u", "of its origin, in the world"),
                          in<&Self::TransY>("u", "likewise"), in<&Self::TransZ>("u", "likewise"),
-                         in<&Self::RotAngle1>("rad", "RX: turned about the new X last"), in<&Self::RotAngle2>("rad", "RY: then about the new Y"),
-                         in<&Self::RotAngle3>("rad", "RZ: first about Z"), in<&Self::CoordSystem>("", "mcPCS, mcPCS_2 to mcPCS_8, mcMCS"),
-                         detail::when_set<&Self::ExecutionMode>(), detail::frame_outcome<Self>());
+                         in<&Self::RotAngle1>("rad", "RX: turned about the new X last"),
+                         in<&Self::RotAngle2>("rad", "RY: then about the new Y"), in<&Self::RotAngle3>("rad", "RZ: first about Z"),
+                         in<&Self::CoordSystem>("", "mcPCS, mcPCS_2 to mcPCS_8, mcMCS"), detail::when_set<&Self::ExecutionMode>(),
+                         detail::frame_outcome<Self>());
     }
     [[nodiscard]] axes::GroupCommand command() const noexcept {
         return {.kind = axes::GroupCommandKind::set_frame,

@@ -1,7 +1,6 @@
 #pragma once
-// What the arm carries: tools, payloads and rigid bodies by number. MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool,
-// MC_GroupWritePayloadData, MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
-// MC_GroupReadRigidBodyDynamic. PLCopen Part 4 v2.0. Real-time safe. Number 0 is the flange, or no payload: readable, not writable (G-079). No set-point
+// What the arm carries: tools and payloads by number. MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool,
+// MC_GroupWritePayloadData, MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload. PLCopen Part 4 v2.0. Real-time safe. Number 0 is the flange, or no payload: readable, not writable (G-079). No set-point
 // depends on masses.
 
 #include <string_view>
@@ -10,15 +9,6 @@
 #include "fb_library/groups/group_equipment_types.hpp"
 
 namespace taktwerk::fb {
-
-namespace detail {
-
-/// A number of a tool or payload as pins have it; what is no number of one is 255, which nobody defines.
-[[nodiscard]] constexpr std::uint8_t number_of(std::int16_t pin) noexcept {
-    return pin >= 0 && pin < 255 ? static_cast<std::uint8_t>(pin) : std::uint8_t{255};
-}
-
-}  // namespace detail
 
 /// Commands that are accepted later have it; one that runs or waits keeps what it took.
 struct MC_GroupWriteToolData : GroupCommandBlock<MC_GroupWriteToolData> {
@@ -35,10 +25,11 @@ struct MC_GroupWriteToolData : GroupCommandBlock<MC_GroupWriteToolData> {
 
     static constexpr std::string_view summary = "Defines a tool of the group.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::ToolNumber>("", "1 to 31"),
-                         in<&Self::ToolData>("", "the tool's point, seen from the flange; its mass"), detail::when_set<&Self::ExecutionMode>(),
-                         out<&Self::Done>("", "later commands have it"),
-                         grouped<&Self::Busy, &Self::CommandAccepted, &Self::CommandAborted, &Self::CommandID, &Self::Error, &Self::ErrorID>());
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::ToolNumber>("", "1 to 31"),
+            in<&Self::ToolData>("", "the tool's point, seen from the flange; its mass"), detail::when_set<&Self::ExecutionMode>(),
+            out<&Self::Done>("", "later commands have it"),
+            grouped<&Self::Busy, &Self::CommandAccepted, &Self::CommandAborted, &Self::CommandID, &Self::Error, &Self::ErrorID>());
     }
     [[nodiscard]] axes::GroupCommand command() const noexcept {
         return {.kind = axes::GroupCommandKind::write_tool,
@@ -101,8 +92,9 @@ struct MC_GroupReadTool : EnableBlock<MC_GroupReadTool> {
 
     static constexpr std::string_view summary = "Gives whose point moves now, or with the next command.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::ToolSource>("", "of the running command, or for the next one"),
-                         reading<Self>(), out<&Self::ToolNumber>("", "0 is the flange"));
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(),
+                         in<&Self::ToolSource>("", "of the running command, or for the next one"), reading<Self>(),
+                         out<&Self::ToolNumber>("", "0 is the flange"));
     }
     [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
         const auto* known = detail::equipment_of(ctx, AxesGroup);
@@ -125,7 +117,7 @@ struct MC_GroupWritePayloadData : GroupSettingBlock<MC_GroupWritePayloadData> {
     static constexpr std::string_view summary = "Defines a payload of the group.";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::PayloadNumber>("", "1 to 31"),
-                         in<&Self::PayloadData>("", "in the frame of the tool's point; kg, u, kg u2"),
+                         in<&Self::PayloadData>("", "in the frame of the tool's point; kg, u, kg m2"),
                          out<&Self::CommandAborted>("", "never: it is written at once"), out<&Self::Done>("", "written"),
                          grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
     }
@@ -146,7 +138,7 @@ struct MC_GroupReadPayloadData : EnableBlock<MC_GroupReadPayloadData> {
     static constexpr std::string_view summary = "Gives a payload of the group as it was written.";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::PayloadNumber>("", "0 to 31; 0 is none"), reading<Self>(),
-                         out<&Self::PayloadData>("", "in the frame of the tool's point; kg, u, kg u2"));
+                         out<&Self::PayloadData>("", "in the frame of the tool's point; kg, u, kg m2"));
     }
     [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
         const auto* known = detail::equipment_of(ctx, AxesGroup);
@@ -187,9 +179,9 @@ struct MC_GroupReadPayload : EnableBlock<MC_GroupReadPayload> {
 
     static constexpr std::string_view summary = "Gives what the arm carries now, or with the next command.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(),
-                         in<&Self::PayloadSource>("", "of the running command, or for the next one"),
-                         out<&Self::CommandAborted>("", "never: it only reads"), reading<Self>(), out<&Self::PayloadNumber>("", "0 is none"));
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::PayloadSource>("", "of the running command, or for the next one"),
+            out<&Self::CommandAborted>("", "never: it only reads"), reading<Self>(), out<&Self::PayloadNumber>("", "0 is none"));
     }
     [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
         const auto* known = detail::equipment_of(ctx, AxesGroup);
@@ -198,57 +190,6 @@ struct MC_GroupReadPayload : EnableBlock<MC_GroupReadPayload> {
         return Reading::unless(PayloadSource > MC_ToolSource::mcSelected ? ErrorId::invalid_parameter : ErrorId::none);
     }
     void clear() noexcept { PayloadNumber = 0; }
-};
-
-/// All of them at once; those behind RigidBodyCount are gone.
-struct MC_GroupWriteRigidBodyDynamic : GroupSettingBlock<MC_GroupWriteRigidBodyDynamic> {
-    GroupRef AxesGroup{};
-    bool Execute = false;
-    std::int16_t RigidBodyCount = 0;
-    RigidBodies RigidBodyDynamic{};
-
-    bool CommandAborted = false, Done = false, Busy = false, Error = false;
-    ErrorId ErrorID{};
-
-    static constexpr std::string_view summary = "Keeps the rigid bodies that the group's links are, for who asks for them.";
-    static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::RigidBodyCount>("", "0 to 8"),
-                         in<&Self::RigidBodyDynamic>("", "kg, u, kg u2; from the base on"),
-                         out<&Self::CommandAborted>("", "never: they are written at once"), out<&Self::Done>("", "written"),
-                         grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
-    }
-    [[nodiscard]] axes::GroupSetting setting() const noexcept {
-        axes::WriteBodies all{.count = detail::number_of(RigidBodyCount), .bodies = {}};
-        for (std::size_t i = 0; i < all.bodies.size() && i < all.count; ++i) all.bodies[i] = detail::written_of(RigidBodyDynamic[i]);
-        return all;
-    }
-};
-
-struct MC_GroupReadRigidBodyDynamic : EnableBlock<MC_GroupReadRigidBodyDynamic> {
-    GroupRef AxesGroup{};
-    bool Enable = false;
-
-    bool CommandAborted = false, Valid = false, Busy = false, Error = false;
-    ErrorId ErrorID{};
-    std::int16_t RigidBodyCount = 0;
-    RigidBodies RigidBodyDynamic{};
-
-    static constexpr std::string_view summary = "Gives the rigid bodies that were written.";
-    static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), out<&Self::CommandAborted>("", "never: it only reads"), reading<Self>(),
-                         out<&Self::RigidBodyCount>("", "0 to 8"), out<&Self::RigidBodyDynamic>("", "kg, u, kg u2"));
-    }
-    [[nodiscard]] Reading read(const MotionContext& ctx) noexcept {
-        const auto* known = detail::equipment_of(ctx, AxesGroup);
-        if (known == nullptr) return Reading::unless(ErrorId::invalid_group);
-        RigidBodyCount = known->body_count;
-        for (std::size_t i = 0; i < RigidBodyDynamic.size(); ++i) RigidBodyDynamic[i] = detail::pin_of(known->bodies[i]);
-        return Reading::valid();
-    }
-    void clear() noexcept {
-        RigidBodyCount = 0;
-        RigidBodyDynamic = {};
-    }
 };
 
 }  // namespace taktwerk::fb

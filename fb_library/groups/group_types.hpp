@@ -15,8 +15,8 @@ using axes::GroupRef;
 
 using axes::MC_CoordSystem;
 using enum axes::MC_CoordSystem;
-using axes::mcPCS_1;
 using axes::MC_TransitionMode;
+using axes::mcPCS_1;
 using enum axes::MC_TransitionMode;
 using axes::MC_TransitionVelocity;
 using enum axes::MC_TransitionVelocity;
@@ -96,8 +96,8 @@ struct MC_GROUP_SWLIMITS {
 enum MC_CommandState : std::uint8_t { mcAccepted, mcActive };
 
 namespace detail {
-inline constexpr std::array<std::string_view, 13> coord_system_names{"mcACS",   "mcMCS",   "mcWCS",   "mcPCS",   "mcFCS",   "mcTCS",  "mcPCS_2",
-                                                                     "mcPCS_3", "mcPCS_4", "mcPCS_5", "mcPCS_6", "mcPCS_7", "mcPCS_8"};
+inline constexpr std::array<std::string_view, 13> coord_system_names{
+    "mcACS", "mcMCS", "mcWCS", "mcPCS", "mcFCS", "mcTCS", "mcPCS_2", "mcPCS_3", "mcPCS_4", "mcPCS_5", "mcPCS_6", "mcPCS_7", "mcPCS_8"};
 inline constexpr std::array<std::string_view, 5> transition_mode_names{"mcTMNone", "mcTMStartVelocity", "mcTMConstantVelocity",
                                                                        "mcTMCornerDistance", "mcTMMaxCornerDeviation"};
 inline constexpr std::array<std::string_view, 5> transition_velocity_names{"mcTVZero", "mcTVLow", "mcTVPrevious", "mcTVNext", "mcTVHigh"};

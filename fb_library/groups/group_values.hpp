@@ -52,8 +52,10 @@ struct MC_GroupReadPosition : GroupReadBlock<MC_GroupReadPosition> {
 
     static constexpr std::string_view summary = "Gives where the group is.";
     static consteval auto pins() {
-        return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
-                         out<&Self::Position>("", "A in ACS, else C of the active tool with Cfg and turns; mcCommandedValue: the end of the active command"));
+        return pin_table(
+            grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
+            out<&Self::Position>(
+                "", "A in ACS, else C of the active tool with Cfg and turns; mcCommandedValue: the end of the active command"));
     }
     [[nodiscard]] Reading read_group(const MotionContext& ctx, const axes::GroupView& view) noexcept {
         const auto answer = ctx.groups->position_in(AxesGroup, CoordSystem, Source);

@@ -34,10 +34,12 @@ public:
     [[nodiscard]] axes::PlaceAnswer transformed(axes::GroupRef group, const axes::PlaceQuestion& question) const noexcept override {
         return groups_.transformed(group, question);
     }
-    [[nodiscard]] axes::PlaceAnswer position_in(axes::GroupRef group, axes::MC_CoordSystem frame, axes::MC_Source source) const noexcept override {
+    [[nodiscard]] axes::PlaceAnswer position_in(axes::GroupRef group, axes::MC_CoordSystem frame,
+                                                axes::MC_Source source) const noexcept override {
         return groups_.position_in(group, frame, source);
     }
-    [[nodiscard]] axes::SixAnswer velocity_in(axes::GroupRef group, axes::MC_CoordSystem frame, axes::MC_Source source) const noexcept override {
+    [[nodiscard]] axes::SixAnswer velocity_in(axes::GroupRef group, axes::MC_CoordSystem frame,
+                                              axes::MC_Source source) const noexcept override {
         return groups_.velocity_in(group, frame, source);
     }
     [[nodiscard]] axes::GroupRef group_of(axes::AxisRef axis) const noexcept override { return groups_.group_of(axis); }

@@ -26,7 +26,7 @@ const std::vector<Leave> large_classes{
 };
 
 const std::vector<Leave> long_headers{
-    {"axes/axis/error_texts.hpp", "", 340, "one table"},
+    {"axes/axis/error_texts.hpp", "", 350, "one table"},
 };
 
 const std::vector<SourceFile>& all_floors() {

@@ -43,6 +43,35 @@ TEST(GroupsOfAFile, TheArmStandsWhereItsAxesSay) {
     EXPECT_FALSE(arm.kinematics->limits_of({0, 121, 0, 0, 0, 0}).ok());
 }
 
+// Lengths in the group's unit, angles in rad, masses in kg, inertias in kg m2.
+TEST(GroupsOfAFile, FramesAndToolsAreThereFromTheBeginning) {
+    const auto machine = loaded_groups().machine;
+    ASSERT_EQ(machine.axis_groups.size(), 2u);
+    const auto& equipment = machine.axis_groups[0].equipment;
+    const double degree = std::numbers::pi / 180;
+    const auto expect = [](const axes::SixNumbers& six, const axes::SixNumbers& wanted) {
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(six[i], wanted[i], 1e-12) << i;
+    };
+    expect(equipment.frames.machine, {2000, 0, 0, 0, 0, 90 * degree});
+    expect(equipment.frames.product[0], {0, 100, 0, 0, -45 * degree, 0});
+    expect(equipment.frames.product[7], {0, 0, 5, 1, 0, 0});
+    expect(equipment.frames.product[3], {});
+    ASSERT_NE(equipment.tools.find(3), nullptr);
+    expect(equipment.tools.find(3)->frame, {120, 0, -40, 0, 0, 180 * degree});
+    EXPECT_NEAR(equipment.tools.find(3)->body.mass, 0.85, 1e-12);
+    EXPECT_NEAR(equipment.tools.find(3)->body.centre[2], 20, 1e-12);
+    EXPECT_NEAR(equipment.tools.find(3)->body.inertia[0], 1e-3, 1e-15);
+    EXPECT_NEAR(equipment.tools.find(3)->body.inertia[2], 2e-3, 1e-15);
+    EXPECT_NE(equipment.tools.find(31), nullptr);
+    EXPECT_EQ(equipment.tools.find(4), nullptr);
+    ASSERT_NE(equipment.payloads.find(1), nullptr);
+    EXPECT_EQ(equipment.payloads.find(1)->mass, 2);
+    EXPECT_NEAR(equipment.payloads.find(1)->centre[0], 30, 1e-12);
+    EXPECT_EQ(equipment.selected_tool, 3);
+    EXPECT_EQ(equipment.selected_payload, 1);
+    EXPECT_EQ(machine.axis_groups[1].equipment.selected_tool, 0);
+}
+
 // Axes in different units of length make one machine in the group's unit.
 TEST(GroupsOfAFile, UnitsOfAxesBecomeTheGroups) {
     const auto machine = loaded_groups().machine;

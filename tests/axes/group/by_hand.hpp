@@ -1,5 +1,5 @@
 #pragma once
-// Frames once more, with nothing of what is tested: 3 x 3 matrices written out. RX RY RZ: turned about Z, the new Y, the new X (G-078).
+// Frames once more, with nothing of what is tested: 3 x 3 matrices written out. RX RY RZ: turned about Z, the new Y, the new X.
 
 #include <array>
 #include <cmath>
@@ -13,7 +13,8 @@ struct HandFrame {
 };
 
 inline HandFrame hand_frame(const Six& s) {
-    const double cz = std::cos(s[5]), sz = std::sin(s[5]), cy = std::cos(s[4]), sy = std::sin(s[4]), cx = std::cos(s[3]), sx = std::sin(s[3]);
+    const double cz = std::cos(s[5]), sz = std::sin(s[5]), cy = std::cos(s[4]), sy = std::sin(s[4]), cx = std::cos(s[3]),
+                 sx = std::sin(s[3]);
     return {{{{cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx},
               {sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx},
               {-sy, cy * sx, cy * cx}}},

@@ -89,7 +89,8 @@ TEST(GroupFramesProperty, OneMotionInAProductAndInTheMachineIsOne) {
             ASSERT_EQ(rig.submit(written).error, ErrorId::none);
             ASSERT_EQ(rig.set(SelectTool{2}), ErrorId::none);
             if (side == 1) {
-                ASSERT_EQ(rig.submit({.kind = GroupCommandKind::set_frame, .frame = mcMCS, .target = as_target(world)}).error, ErrorId::none);
+                ASSERT_EQ(rig.submit({.kind = GroupCommandKind::set_frame, .frame = mcMCS, .target = as_target(world)}).error,
+                          ErrorId::none);
                 ASSERT_EQ(rig.submit({.kind = GroupCommandKind::set_frame, .frame = mcPCS_3, .target = as_target(product)}).error,
                           ErrorId::none);
             }

@@ -222,4 +222,7 @@ export const axis_errors: Readonly<Record<string, string>> = {
     'No motion along the path was found': '未找到沿路径的运动',
     'Within all limits of the axes and the command the planner found none from where the group stands': '在各轴和命令的所有限制之内，规划器从轴组所在位置未找到运动',
     'Give the command again with lower dynamics or another path; report it with a recording of the run': '降低动态参数或更换路径后重新发出命令；请附上运行记录报告',
+    'There is no such tool or payload': '没有该工具或负载',
+    'Nothing is defined under this number, it is above 31, or it is 0 (the flange, no payload), which cannot be written': '该编号下没有定义，编号大于 31，或编号为 0（法兰、无负载）而不可写入',
+    'Write it first with MC_GroupWriteToolData or MC_GroupWritePayloadData under a number from 1 to 31, or define it under `tools` or `payloads` of the group': '先用 MC_GroupWriteToolData 或 MC_GroupWritePayloadData 以 1 至 31 的编号写入，或在轴组的 `tools` 或 `payloads` 中定义',
 };
