@@ -14,7 +14,7 @@ namespace {
 
 using enum GroupState;
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr double in_degrees = std::numbers::pi / 180;
+constexpr double rad_per_degree = std::numbers::pi / 180;
 
 GroupCommand in(MC_CoordSystem frame, GroupCommand command) {
     command.frame = frame;
@@ -181,7 +181,7 @@ TEST(GroupFrames, WhatCannotBeSetIsRefused) {
 /// Two links of 200 and 150, degrees.
 Arm scara_arm() {
     KinematicsDescription description{.arm = ScaraLengths{.first = 200, .second = 150, .height = 0}};
-    description.joints[0].unit = description.joints[1].unit = description.joints[3].unit = in_degrees;
+    description.joints[0].unit = description.joints[1].unit = description.joints[3].unit = rad_per_degree;
     return arm_of(description);
 }
 std::vector<AxisConfig> axes_of_scara() {
@@ -191,7 +191,7 @@ std::vector<AxisConfig> axes_of_scara() {
 }
 /// A point that stands `ahead` in front of the flange, by hand.
 std::array<double, 2> point_ahead(const JointVector& q, double ahead) {
-    const double a = q[0] * in_degrees, b = a + q[1] * in_degrees, c = b + q[3] * in_degrees;
+    const double a = q[0] * rad_per_degree, b = a + q[1] * rad_per_degree, c = b + q[3] * rad_per_degree;
     return {200 * std::cos(a) + 150 * std::cos(b) + ahead * std::cos(c), 200 * std::sin(a) + 150 * std::sin(b) + ahead * std::sin(c)};
 }
 void stand(GroupRig& rig) {
@@ -214,7 +214,8 @@ TEST(GroupTools, TheToolsPointGoesAlongTheLine) {
     EXPECT_NEAR(rig.view().tool_set[2], -10, 1e-9);
     // The tool turns by 60 degrees on the way: the flange's own way is no line then.
     const auto from = rig.path.size();
-    const auto move = rig.give(in(mcMCS, line({start[0] - 20, start[1] + 100, -10, 0, 0, 70 * in_degrees + std::numbers::pi / 3}, 150)));
+    const auto move =
+        rig.give(in(mcMCS, line({start[0] - 20, start[1] + 100, -10, 0, 0, 70 * rad_per_degree + std::numbers::pi / 3}, 150)));
     ASSERT_EQ(move.error, ErrorId::none);
     ASSERT_TRUE(done(rig, move.id)) << static_cast<int>(rig.error_of(move.id));
     double bent = 0;
@@ -236,7 +237,7 @@ TEST(GroupTools, ASelectedToolIsForTheNextCommand) {
     ASSERT_EQ(rig.give(write_tool(1, {50, 0, 0})).error, ErrorId::none);
     const auto* equipment = rig.groups.equipment(GroupRig::ref);
     const auto start = point_ahead(rig.point(), 0);
-    const double turn = 70 * in_degrees;
+    const double turn = 70 * rad_per_degree;
     const auto running = rig.give(in(mcMCS, line({start[0], start[1] + 60, 0, 0, 0, turn}, 100)));
     rig.run(50);
     ASSERT_EQ(rig.status(running.id), CommandStatus::active);
@@ -278,7 +279,7 @@ TEST(GroupTools, AQueuedToolHasItsPlaceBetweenMotions) {
     ASSERT_EQ(rig.give(write_tool(1, {50, 0, 0})).error, ErrorId::none);
     ASSERT_EQ(rig.set(SelectTool{1}), ErrorId::none);
     const auto start = point_ahead(rig.point(), 50);
-    const double turn = 70 * in_degrees;
+    const double turn = 70 * rad_per_degree;
     const auto first = rig.give(in(mcMCS, line({start[0], start[1] + 40, 0, 0, 0, turn}, 100)));
     ASSERT_EQ(rig.give(write_tool(1, {60, 0, 0}, mcQueued)).error, ErrorId::none);
     const auto second = rig.give(in(mcMCS, line({start[0], start[1] + 40, 0, 0, 0, turn}, 100, mcBuffered)));
@@ -297,7 +298,7 @@ TEST(GroupTools, TcsIsWhereTheCommandBeforeEnds) {
     ASSERT_EQ(rig.give(write_tool(1, {50, 0, 0})).error, ErrorId::none);
     ASSERT_EQ(rig.set(SelectTool{1}), ErrorId::none);
     const auto start = point_ahead(rig.point(), 50);
-    const double turn = 110 * in_degrees;
+    const double turn = 110 * rad_per_degree;
     const auto first = rig.give(in(mcMCS, line({start[0], start[1] + 40, 0, 0, 0, turn}, 100)));
     const auto ahead = rig.give(in(mcTCS, line({10, 0, 0, 0, 0, 0}, 100, mcBuffered)));
     const auto around = rig.give(in(mcTCS, line_by({0, 5, 0, 0, 0, -turn}, 100, mcBuffered)));
