@@ -166,10 +166,10 @@ TEST(GroupFrameBlocks, PositionsAndVelocitiesAreReadInEveryFrame) {
         velocity(ctx);
         actual(ctx);
     };
-    ASSERT_TRUE(plc.until([&] { return velocity.PathVelocity > 19.99; }, 2000));
+    ASSERT_TRUE(plc.until([&] { return velocity.PathVelocity > 19.98; }, 2000));
     ASSERT_TRUE(position.Valid && velocity.Valid && actual.Valid);
     EXPECT_NEAR(velocity.Velocity[0], 0, 1e-9);
-    EXPECT_NEAR(velocity.Velocity[1], -20, 0.01);
+    EXPECT_NEAR(velocity.Velocity[1], -20, 0.02);
     const double x = plc.rig.view().set_position[0];  // one cycle on
     EXPECT_NEAR(position.Position.C.Tcp.X, -20, 1e-9) << "y = 0 is 20 below the product's origin";
     EXPECT_NEAR(position.Position.C.Tcp.Y, 10 - x, 0.05);
