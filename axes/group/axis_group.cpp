@@ -26,8 +26,8 @@ std::string_view name(GroupState state) noexcept {
     return names[static_cast<std::size_t>(state)];
 }
 
-AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle)
-    : config_(std::move(config)), members_(axes), run_(config_.kinematics, cycle) {
+AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle, const PathShelf* paths)
+    : config_(std::move(config)), paths_(paths), members_(axes), run_(config_.kinematics, cycle, paths, config_.millimetre) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;
     publish();
@@ -42,6 +42,7 @@ void AxisGroup::abort_all() noexcept {
     queue_.finish_waiting(Outcome::aborted);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);
     if (interrupted_) run_.clear();  // nobody goes on with it
+    forget_path();
     interrupting_ = 0;
     interrupted_ = begun_ = false;
 }
@@ -61,6 +62,7 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::error, ErrorId::aborted_by_axis_error);
     if (interrupted_) run_.clear();
+    forget_path();
     interrupting_ = lock_ = 0;
     interrupted_ = begun_ = false;
     run_.stop({}, Override{});
@@ -160,6 +162,12 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
     }
     send_waiting();
     if (const auto said = run_.verdict(active.id)) return said;
+    if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
+        begun_ = sent_ >= active.id;
+        if (begun_) forget_path();
+        if (begun_) view_.path = {.path = command.path, .request_id = view_.path.request_id};
+        return std::nullopt;
+    }
     begun_ = run_.begin(active.id);
     if (begun_) view_.commanded = run_.end();
     return std::nullopt;
@@ -171,7 +179,8 @@ void AxisGroup::send_waiting() noexcept {
     const auto send = [this](const AcceptedGroupCommand& accepted, const AcceptedGroupCommand* before) {
         const auto& command = accepted.command;
         if (accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
-        const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow;
+        const bool stored = command.kind == GroupCommandKind::path || (before != nullptr && before->command.kind == GroupCommandKind::path);
+        const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         if (!run_.send(accepted.id, command, resolved(command.dynamics, view_.default_dynamics), joins)) return false;
         sent_ = accepted.id;
         return true;
@@ -211,6 +220,7 @@ void AxisGroup::go_on(Duration period) noexcept {
         return;
     }
     if (!begun_ || !queue_.has_active()) return;
+    if (queue_.active().command.kind == GroupCommandKind::path) return walk_path(period);
     // The set-point has gone over to the way of a later command (G-061).
     while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
         queue_.finish_active(Outcome::done);
@@ -283,6 +293,7 @@ void AxisGroup::publish() noexcept {
     view_.lock = lock_;
     view_.interrupting = interrupting_;
     view_.disabling = disabling_;
+    see_selection();
     queue_.publish(view_);
 }
 

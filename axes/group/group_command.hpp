@@ -7,6 +7,7 @@
 
 #include "axes/axis/command.hpp"
 #include "axes/group/group_types.hpp"
+#include "axes/group/path_types.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -20,6 +21,7 @@ enum class GroupCommandKind : std::uint8_t {
     circular_relative,
     direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
     direct_relative,
+    path,  ///< a stored path, as it was prepared
     wait,  ///< duration
     halt,
     // beside it
@@ -29,7 +31,7 @@ enum class GroupCommandKind : std::uint8_t {
     disable,    ///< GroupDisabled once the group stands
 };
 [[nodiscard]] constexpr bool goes_a_way(GroupCommandKind kind) noexcept {
-    return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::direct_relative;
+    return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::path;
 }
 [[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
     return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::circular_relative ||
@@ -69,6 +71,8 @@ struct GroupCommand {
     JointVector target{};  ///< ACS: by place. Other frames: X Y Z [u], RX RY RZ [rad]
     PathDynamics dynamics{};
     Duration duration{};
+    PathRef path{};                  ///< GroupCommandKind::path
+    std::uint32_t ticket = 0;        ///< of its selection
     const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
     friend bool operator==(const GroupCommand&, const GroupCommand&) = default;
 };

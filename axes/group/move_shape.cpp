@@ -98,8 +98,18 @@ Result<PathElement> arc_of(const GroupOrder& move, const Pose& start, const Path
     return arc_of_radius(from, to, frame * aux, sense);
 }
 
-/// Everywhere along it: reached by the same way of the arm, inside the limits, not singular.
 void walk(MoveShape& shape, const MoveEnd& from, const MoveSpace& space) {
+    constexpr int least = 64, most = 2048;
+    const double length = shape.element.length();
+    const double size = std::max(shape.element.feature(length / 2) / 2, length / most);
+    walk_along(shape, from, space, std::clamp(static_cast<int>(std::min(length / size, 1.0 * most)), least, most));
+}
+
+}  // namespace
+
+PathChart chart_at(const Pose& pose, const Kinematics& arm) noexcept { return {pose.orientation, turns(arm) ? turn_lever : 0}; }
+
+void walk_along(MoveShape& shape, const MoveEnd& from, const MoveSpace& space, int steps) {
     PathSection whole;
     whole.element = shape.element;
     whole.chart = shape.chart;
@@ -107,9 +117,6 @@ void walk(MoveShape& shape, const MoveEnd& from, const MoveSpace& space) {
     RunSection run;
     run.through_arm = true;
     run.configuration = from.configuration;
-    constexpr int least = 64, most = 2048;
-    const double size = std::max(shape.element.feature(whole.length / 2) / 2, whole.length / most);
-    const int steps = std::clamp(static_cast<int>(std::min(whole.length / size, 1.0 * most)), least, most);
     MemberVector near = from.members;
     for (int i = 0; i <= steps; ++i) {
         const WayPoint w = way_point(whole, run, whole.length * i / steps, space.arm, space.tool, space.members, near);
@@ -122,8 +129,6 @@ void walk(MoveShape& shape, const MoveEnd& from, const MoveSpace& space) {
     }
     shape.end = {near, from.configuration};
 }
-
-}  // namespace
 
 Pose pose_of_turns(const std::array<double, 3>& place, const std::array<double, 3>& turns) noexcept {
     return pose_of_six({place[0], place[1], place[2], turns[0], turns[1], turns[2]});
@@ -156,7 +161,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
 
     MoveShape shape;
     shape.through_arm = true;
-    shape.chart = {start.orientation, turns(*space.arm) ? turn_lever : 0};
+    shape.chart = chart_at(start, *space.arm);
     const Eigen::Vector3d turn = rotation_between(orientation_of(start), orientation_of(goal));
     if (turn.norm() > std::numbers::pi - 1e-9) return refused(ErrorId::half_turn);  // G-043: which way round is nobody's choice
     PathVector a = PathVector::Zero(), b = PathVector::Zero();

@@ -28,8 +28,6 @@ inline constexpr std::array not_offered{
     NotOffered{"MC_GroupWriteReferenceDynamics", "not_supported: there is no mcPercentage yet that would read it"},
     NotOffered{"MC_GroupReadReferenceDynamics", "not_supported: there is no mcPercentage yet"},
     NotOffered{"MC_GroupWriteSWLimits", "not_supported: MC_WriteParameter of each axis; writing all or none is not written yet"},
-    NotOffered{"MC_PathSelect", "not_supported: stored paths come with the path planner"},
-    NotOffered{"MC_MovePath", "not_supported: stored paths come with the path planner"},
     NotOffered{"MC_GroupJog", "not_supported: a group is not jogged yet; its axes are, in GroupStandby"},
     NotOffered{"MC_GroupJogVector", "not_supported: a group is not jogged yet"},
     NotOffered{"MC_GroupWriteJoggingDynamics", "not_supported: a group is not jogged yet"},
