@@ -24,7 +24,9 @@ void AxisGroup::walk_path(Duration period) noexcept {
         if (!serve(*note, goes ? period : Duration{})) return;
         if (note->kind == PathNote::Kind::end) return queue_.finish_active(Outcome::done);
         if (note->kind == PathNote::Kind::fault) return queue_.finish_active(Outcome::error, note->place.error);
+        const bool told = note->kind == PathNote::Kind::tell;
         run_.drop_note();
+        if (told) return;  // one a cycle, or nobody sees it
     }
     if (goes) run_.go_over(active.id);
 }

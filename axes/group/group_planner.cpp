@@ -13,6 +13,9 @@ PathFeed feed_of(const PathDynamics& d) noexcept {
     return {std::max(d.velocity, 0.0), std::max(d.acceleration, 0.0), std::max(d.deceleration, 0.0), std::max(d.jerk, 0.0)};
 }
 
+/// Pieces of nearly one length would leave straight parts of a millionth between their curves, around which time is planned in cells of that size.
+constexpr double share_of_short_pieces = 0.45;
+
 /// Braking from v, limited in jerk.
 double stopping_way(double v, double a, double j) noexcept {
     return v * j >= a * a ? v * v / (2 * a) + v * a / (2 * j) : v * std::sqrt(v / j);
@@ -135,7 +138,8 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     element.chart = shape.chart;
     element.feed = feed_of(move.command.dynamics);
     element.command = move.id;
-    const BlendRequest request = blended ? blend_of(run, move, shape) : BlendRequest{};
+    BlendRequest request = blended ? blend_of(run, move, shape) : BlendRequest{};
+    if (run.pulled) request.share = share_of_short_pieces;
     const Path::Mark kept = curve.path.mark();
     const std::size_t known = curve.seen.size();
     const double before_velocity = known > 0 ? curve.path.sections().back().feed.velocity : 0;

@@ -72,6 +72,7 @@ ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
 ErrorId AxisGroup::refuse_stored(const GroupCommand& command) const noexcept {
     if (command.transition != mcTMNone || command.frame == mcACS) return ErrorId::not_supported;
     if (const auto error = refuse_frame(command, config_.kinematics.get(), members_); error != ErrorId::none) return error;
+    if (!command.path.valid()) return ErrorId::path_not_selected;
     const auto* state = paths_ != nullptr ? paths_->state(command.path) : nullptr;
     if (state == nullptr) return ErrorId::invalid_parameter;
     if (state->kind != PathState::Kind::ready || state->ticket != command.ticket) return ErrorId::path_not_selected;

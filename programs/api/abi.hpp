@@ -22,7 +22,7 @@ inline constexpr const char* sdk_version = "0.1.0";
 ///    swapped, another unit, another meaning);
 ///  - a block's function and the axis agree on something new (what a command id means, who renews a lease).
 /// Not for: new blocks or pins (hashed), documentation, anything behind the virtual functions. It is never lowered or reused.
-inline constexpr std::uint64_t program_interface_version = 9;
+inline constexpr std::uint64_t program_interface_version = 10;
 
 [[nodiscard]] constexpr std::uint64_t abi_hash() noexcept {
     std::uint64_t hash = fb::block_abi_hash;

@@ -41,6 +41,7 @@ struct PathRig {
         std::vector<axes::AxisConfig> configs;
         for (const char* name : {"x", "y", "z"}) {
             configs.push_back(axes::test::group_axis(name));
+            configs.back().homing.kind = axes::HomingKind::set_here;
             if (stroke > 0) configs.back().limits.position_min = -stroke, configs.back().limits.position_max = stroke;
         }
         return configs;
