@@ -12,6 +12,7 @@
 #include "fb_library/groups/group_jogging.hpp"
 #include "fb_library/groups/group_limits.hpp"
 #include "fb_library/groups/group_moves.hpp"
+#include "fb_library/groups/group_paths.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
 #include "fb_library/groups/group_tools.hpp"
@@ -93,26 +94,29 @@ using HomingBlocks =
               MC_HomeAbsolute, MC_FinishHoming, MC_StepReferenceFlyingSwitch, MC_StepReferenceFlyingRefPulse, MC_AbortPassiveHoming>;
 
 /// PLCopen Part 4: axes that move together. Those of the standard that are not there: fb_library/groups/part4.hpp.
-using GroupBlocks = BlockList<MC_AddAxisToGroup, MC_RemoveAxisFromGroup, MC_UngroupAllAxes, MC_GroupReadConfiguration, MC_ReadAxisGroupInfo,
-                              MC_GroupEnable, MC_GroupDisable, MC_GroupPower, MC_GroupReadPosition, MC_GroupReadActualPosition,
-                              MC_GroupReadVelocity, MC_GroupReadActualVelocity, MC_GroupReadAcceleration, MC_GroupReadMotionState,
-                              MC_GroupReadCommandInfo, MC_GroupWriteDefaultDynamics, MC_GroupReadDefaultDynamics, MC_GroupStop,
-                              MC_GroupHalt, MC_GroupInterrupt, MC_GroupContinue, MC_GroupReadStatus, MC_GroupReadError, MC_GroupReset,
-                              MC_GroupReadSWLimits, MC_MoveLinearAbsolute, MC_MoveLinearRelative, MC_MoveCircularAbsolute,
-                              MC_MoveCircularRelative, MC_MoveDirectAbsolute, MC_MoveDirectRelative, MC_GroupWaitTime, MC_GroupSetOverride,
-                              MC_SetCartesianTransform, MC_SetCoordinateTransform, MC_ReadCartesianTransform, MC_ReadCoordinateTransform,
-                              MC_ReadKinTransform, MC_ReadDHParameters, MC_ReadJointInfo, MC_GroupTransformPosition, MC_GroupSetPosition,
-                              MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool, MC_GroupWritePayloadData,
-                              MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
-                              MC_GroupReadRigidBodyDynamic, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics,
-                              MC_GroupReadJoggingDynamics>;
+using GroupBlocks =
+    BlockList<MC_AddAxisToGroup, MC_RemoveAxisFromGroup, MC_UngroupAllAxes, MC_GroupReadConfiguration, MC_ReadAxisGroupInfo, MC_GroupEnable,
+              MC_GroupDisable, MC_GroupPower, MC_GroupReadPosition, MC_GroupReadActualPosition, MC_GroupReadVelocity,
+              MC_GroupReadActualVelocity, MC_GroupReadAcceleration, MC_GroupReadMotionState, MC_GroupReadCommandInfo,
+              MC_GroupWriteDefaultDynamics, MC_GroupReadDefaultDynamics, MC_GroupStop, MC_GroupHalt, MC_GroupInterrupt, MC_GroupContinue,
+              MC_GroupReadStatus, MC_GroupReadError, MC_GroupReset, MC_GroupReadSWLimits, MC_MoveLinearAbsolute, MC_MoveLinearRelative,
+              MC_MoveCircularAbsolute, MC_MoveCircularRelative, MC_MoveDirectAbsolute, MC_MoveDirectRelative, MC_GroupWaitTime,
+              MC_GroupSetOverride, MC_SetCartesianTransform, MC_SetCoordinateTransform, MC_ReadCartesianTransform,
+              MC_ReadCoordinateTransform, MC_ReadKinTransform, MC_ReadDHParameters, MC_ReadJointInfo, MC_GroupTransformPosition,
+              MC_GroupSetPosition, MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool,
+              MC_GroupWritePayloadData, MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
+              MC_GroupReadRigidBodyDynamic, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics, MC_GroupReadJoggingDynamics,
+              MC_PathSelect, MC_MovePath>;
+/// Stored paths, beside the standard's blocks.
+using PathBlocks = BlockList<Path_Handshake>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 
 using MotionBlocks = decltype(detail::joined(
     detail::joined(detail::joined(AxisBlocks{}, AdministrativeBlocks{}), detail::joined(CouplingBlocks{}, VendorBlocks{})), DriveBlocks{}));
-using AllBlocks = decltype(detail::joined(
-    detail::joined(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), HomingBlocks{}), GroupBlocks{}), FieldbusBlocks{}));
+using AllBlocks = decltype(detail::joined(detail::joined(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), HomingBlocks{}),
+                                                         detail::joined(GroupBlocks{}, PathBlocks{})),
+                                          FieldbusBlocks{}));
 
 /// The blocks of a list as bytes and pins, e.g. types_of<IecBlocks>. It costs the compiler seconds: name it where it is needed and not in a header.
 template <class List>

@@ -58,6 +58,9 @@ std::string block_reference_markdown() {
     page += "\n## PLCopen groups\n";
     for (const BlockType& type : types_of<GroupBlocks>) append_block(page, type);
 
+    page += "\n## Stored paths\n";
+    for (const BlockType& type : types_of<PathBlocks>) append_block(page, type);
+
     page += "\n## Fieldbus\n";
     for (const BlockType& type : types_of<FieldbusBlocks>) append_block(page, type);
 

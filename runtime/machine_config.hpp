@@ -16,6 +16,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
+#include "fb_library/gcode/interpreter_options.hpp"
 #include "modbus/tcp/device_config.hpp"
 #include "programs/api/program_entry.hpp"
 #include "runtime/analog_axis.hpp"
@@ -203,6 +204,13 @@ struct EvidenceConfig {
     std::uint16_t megabytes = 16;  ///< of memory for the last frames, taken twice
 };
 
+/// A program in G-code for the groups: MC_PathSelect. Its text is configuration: read when the machine starts, known to a recording by its check sum.
+struct PathConfig {
+    std::string name, file;
+    std::shared_ptr<const std::string> text{};
+    gcode::InterpreterOptions options{};  ///< tools, offsets, reference positions, units
+};
+
 struct MachineConfig {
     std::string name = "machine";
     Duration cycle = std::chrono::milliseconds{1};
@@ -213,6 +221,7 @@ struct MachineConfig {
     std::vector<modbus::tcp::DeviceConfig> modbus;  ///< their points have `beside`
     std::vector<AxisBinding> axes;
     std::vector<axes::AxisGroupConfig> axis_groups{};  ///< of axes that move together, for programs
+    std::vector<PathConfig> paths{};                   ///< programs in G-code that groups go
     std::vector<IoPoint> io;
     std::vector<TaskConfig> tasks;
     std::vector<CamConfig> cams;

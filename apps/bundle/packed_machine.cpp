@@ -22,12 +22,13 @@ const char* word(Kind kind) {
         case Kind::device: return "device";
         case Kind::program: return "program";
         case Kind::cam: return "cam";
+        case Kind::path: return "path";
         case Kind::image: return "image";
     }
     return "";
 }
 
-bool beside_the_machine(Kind kind) { return kind == Kind::program || kind == Kind::cam || kind == Kind::image; }
+bool beside_the_machine(Kind kind) { return kind == Kind::program || kind == Kind::cam || kind == Kind::path || kind == Kind::image; }
 
 /// How many folders a relative path goes up before it goes down.
 std::size_t steps_up(const std::string& written) {

@@ -26,8 +26,8 @@ std::string_view name(GroupState state) noexcept {
     return names[static_cast<std::size_t>(state)];
 }
 
-AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle)
-    : config_(std::move(config)), members_(axes), run_(config_.kinematics, cycle) {
+AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle, const PathShelf* paths)
+    : config_(std::move(config)), paths_(paths), members_(axes), run_(config_.kinematics, cycle, paths, config_.millimetre) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;
     equipment_ = config_.equipment;
@@ -44,6 +44,7 @@ void AxisGroup::abort_all() noexcept {
     queue_.finish_waiting(Outcome::aborted);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);
     if (interrupted_) run_.clear();  // nobody goes on with it
+    forget_path();
     interrupting_ = 0;
     interrupted_ = begun_ = false;
 }
@@ -63,6 +64,7 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::error, ErrorId::aborted_by_axis_error);
     if (interrupted_) run_.clear();
+    forget_path();
     interrupting_ = lock_ = 0;
     interrupted_ = begun_ = false;
     run_.stop({}, Override{});
@@ -171,6 +173,12 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
     }
     send_waiting();
     if (const auto said = run_.verdict(active.id)) return said;
+    if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
+        begun_ = sent_ >= active.id;
+        if (begun_) forget_path();
+        if (begun_) view_.path = {.path = command.path, .request_id = view_.path.request_id};
+        return std::nullopt;
+    }
     begun_ = run_.begin(active.id);
     if (begun_) view_.commanded = run_.end();
     return std::nullopt;
@@ -182,7 +190,8 @@ void AxisGroup::send_waiting() noexcept {
     const auto send = [this](const AcceptedGroupCommand& accepted, const AcceptedGroupCommand* before) {
         const auto& command = accepted.command;
         if (is_setting(command.kind) || accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
-        const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow;
+        const bool stored = command.kind == GroupCommandKind::path || (before != nullptr && before->command.kind == GroupCommandKind::path);
+        const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         const bool sent = command.kind == GroupCommandKind::jog
                               ? run_.send(accepted.id, command, accepted.place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
                               : run_.send(accepted.id, command, accepted.place, resolved(command.dynamics, view_.default_dynamics), joins);
@@ -228,6 +237,7 @@ void AxisGroup::go_on(Duration period) noexcept {
         return;
     }
     if (!begun_ || !queue_.has_active()) return;
+    if (queue_.active().command.kind == GroupCommandKind::path) return walk_path(period);
     // The set-point has gone over to the way of a later command (G-061).
     while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
         const auto passed = run_.verdict(queue_.active().id).value_or(ErrorId::none);  // one that makes no way lies in no run
@@ -305,6 +315,7 @@ void AxisGroup::publish() noexcept {
     view_.lock = lock_;
     view_.interrupting = interrupting_;
     view_.disabling = disabling_;
+    see_selection();
     queue_.publish(view_);
 }
 

@@ -28,7 +28,9 @@ namespace taktwerk::axes {
 class AxisGroup {
 public:
     /// `config` must have passed check(); `axes` are all axes of the machine and must live longer. `members`: of config.members, by place.
-    AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle);
+    /// `paths`: the machine's stored ones; nullptr: it has none.
+    AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle,
+              const PathShelf* paths = nullptr);
 
     [[nodiscard]] const AxisGroupConfig& config() const noexcept { return config_; }
     [[nodiscard]] const GroupView& view() const noexcept { return view_; }
@@ -55,6 +57,12 @@ public:
     ErrorId set(const GroupSetting& setting, Owner owner) noexcept;
     ErrorId reset(Owner owner) noexcept;
     void release_stop(CommandId id) noexcept;
+    /// Of a stored path: the request of this number is done. Errors: unknown_command.
+    ErrorId acknowledge(std::uint32_t request, Owner owner) noexcept;
+    /// MC_PathSelect for this group.
+    void selected(PathRef path) noexcept;
+    /// It goes this path, or it is the next to be gone.
+    [[nodiscard]] bool uses(PathRef path) const noexcept;
 
 private:
     [[nodiscard]] bool waits(const GroupCommand& command) const noexcept;
@@ -67,6 +75,7 @@ private:
     [[nodiscard]] ErrorId refuse(const GroupCommand& command, Owner owner) const noexcept;
     [[nodiscard]] ErrorId refuse_state(const GroupCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_way(const GroupCommand& command) const noexcept;
+    [[nodiscard]] ErrorId refuse_stored(const GroupCommand& command) const noexcept;
     Submitted take_motion(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_stop(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_interrupt(const GroupCommand& command) noexcept;
@@ -91,6 +100,10 @@ private:
     void tend_jog(Duration period) noexcept;
     ErrorId set_jog(const GroupSetting& setting) noexcept;
     void go_on(Duration period) noexcept;
+    void walk_path(Duration period) noexcept;
+    [[nodiscard]] bool serve(const PathNote& note, Duration period) noexcept;
+    void forget_path() noexcept;
+    void see_selection() noexcept;
     void watch_reset() noexcept;
     /// The active one, where it is a setting: done.
     void finish_setting() noexcept;
@@ -99,11 +112,12 @@ private:
     void publish() noexcept;
 
     AxisGroupConfig config_;
+    const PathShelf* paths_;
     GroupMembers members_;
     GroupQueue queue_;
     PathRun run_;
-    GroupJog jog_;        // while jogs()
-    GroupView view_;      // and its settings: override, dynamics, error, reset
+    GroupJog jog_;    // while jogs()
+    GroupView view_;  // and its settings: override, dynamics, error, reset
     GroupEquipment equipment_;
     JointVector hold_{};  // where the members stand without a run
     GroupState state_ = GroupState::GroupDisabled;
@@ -113,6 +127,10 @@ private:
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
     CommandId sent_ = 0;  // the last one that the planner has
     Duration elapsed_{};  // of the active command
+    struct {
+        Duration dwelt{};       // of its pause
+        bool answered = false;  // its request
+    } path_;
 };
 
 }  // namespace taktwerk::axes

@@ -2,14 +2,17 @@
 
 namespace taktwerk::axes {
 
-void AxisGroups::build(const std::vector<AxisGroupConfig>& configs, std::span<Axis> axes, Duration cycle) {
+void AxisGroups::build(const std::vector<AxisGroupConfig>& configs, std::span<Axis> axes, Duration cycle,
+                       std::vector<std::unique_ptr<PathMaker>> paths) {
+    if (!paths.empty()) paths_ = std::make_unique<PathShelf>();
+    for (auto& maker : paths) paths_->add(std::move(maker));
     groups_.reserve(configs.size());
     for (const auto& config : configs) {
         std::vector<AxisRef> members;
         for (const auto& name : config.members)
             for (std::size_t i = 0; i < axes.size(); ++i)
                 if (axes[i].config().name == name) members.push_back({static_cast<std::uint16_t>(i)});
-        groups_.emplace_back(config, axes, members, cycle);
+        groups_.emplace_back(config, axes, members, cycle, paths_.get());
     }
 }
 
@@ -64,6 +67,25 @@ PlaceAnswer AxisGroups::position_in(GroupRef group, MC_CoordSystem frame, MC_Sou
 SixAnswer AxisGroups::velocity_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept {
     if (group.index >= groups_.size()) return {ErrorId::invalid_group, {}};
     return axes::velocity_in(frame, source, groups_[group.index].view(), groups_[group.index].equipment());
+}
+
+Submitted AxisGroups::select(GroupRef group, PathRef path, const PathOptions& options) noexcept {
+    auto* found = find(group);
+    if (!found) return {0, ErrorId::invalid_group};
+    if (!paths_ || paths_->state(path) == nullptr || options.start_line == 0) return {0, ErrorId::invalid_parameter};
+    for (const auto& other : groups_)
+        if (other.uses(path)) return {0, ErrorId::path_in_use};
+    const auto& view = found->view();
+    const auto& tool = view.tool_set;
+    if (!view.tool_known) return {0, ErrorId::no_kinematics};
+    const auto ticket = paths_->select(path, options, {tool[0], tool[1], tool[2]}, found->config().millimetre);
+    if (ticket != 0) found->selected(path);
+    return {ticket, ticket != 0 ? ErrorId::none : ErrorId::queue_full};
+}
+
+ErrorId AxisGroups::acknowledge(GroupRef group, std::uint32_t request, Owner owner) noexcept {
+    auto* found = find(group);
+    return found ? found->acknowledge(request, owner) : ErrorId::invalid_group;
 }
 
 GroupRef AxisGroups::group_of(AxisRef axis) const noexcept {

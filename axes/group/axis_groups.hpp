@@ -1,11 +1,13 @@
 #pragma once
 // All groups of a machine: their part of a cycle, and the way of the base task's programs to them.
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "axes/group/axis_group.hpp"
 #include "axes/group/group_access.hpp"
+#include "axes/group/path_shelf.hpp"
 
 namespace taktwerk::axes {
 
@@ -13,10 +15,12 @@ class AxisGroups final : public GroupAccess {
 public:
     AxisGroups() = default;
     /// Not real-time; `axes` are all axes of the machine and must live longer.
-    void build(const std::vector<AxisGroupConfig>& configs, std::span<Axis> axes, Duration cycle);
+    void build(const std::vector<AxisGroupConfig>& configs, std::span<Axis> axes, Duration cycle,
+               std::vector<std::unique_ptr<PathMaker>> paths = {});
 
     /// After the axes' update() and supervise().
     void update(Instant now) noexcept {
+        if (paths_) paths_->take_answers();
         for (auto& group : groups_) group.update(now);
     }
     /// Before the axes' plan().
@@ -25,6 +29,7 @@ public:
     }
     /// The planners' steps: service side, one thread beside the cycle; not real-time.
     void service() {
+        if (paths_) paths_->service();
         for (auto& group : groups_) group.service();
     }
     [[nodiscard]] std::size_t size() const noexcept { return groups_.size(); }
@@ -43,9 +48,13 @@ public:
     [[nodiscard]] PlaceAnswer position_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept override;
     [[nodiscard]] SixAnswer velocity_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept override;
     [[nodiscard]] GroupRef group_of(AxisRef axis) const noexcept override;
+    Submitted select(GroupRef group, PathRef path, const PathOptions& options) noexcept override;
+    [[nodiscard]] const PathState* path(PathRef path) const noexcept override { return paths_ ? paths_->state(path) : nullptr; }
+    ErrorId acknowledge(GroupRef group, std::uint32_t request, Owner owner) noexcept override;
 
 private:
     [[nodiscard]] AxisGroup* find(GroupRef group) noexcept { return group.index < groups_.size() ? &groups_[group.index] : nullptr; }
+    std::unique_ptr<PathShelf> paths_;  // nullptr: none are stored
     std::vector<AxisGroup> groups_;
 };
 

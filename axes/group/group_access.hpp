@@ -25,6 +25,13 @@ public:
     [[nodiscard]] virtual SixAnswer velocity_in(GroupRef group, MC_CoordSystem frame, MC_Source source) const noexcept = 0;
     /// Of which group the axis is a member; invalid: of none.
     [[nodiscard]] virtual GroupRef group_of(AxisRef axis) const noexcept = 0;
+    /// Prepares a stored path for this group, MC_PathSelect: path() says what became of the ticket. Errors: invalid_parameter, path_in_use, no_kinematics,
+    /// queue_full.
+    virtual Submitted select(GroupRef group, PathRef path, const PathOptions& options) noexcept = 0;
+    /// nullptr: the machine has no such path.
+    [[nodiscard]] virtual const PathState* path(PathRef path) const noexcept = 0;
+    /// Of the path that the group is on: the request of this number (PathView) is done.
+    virtual ErrorId acknowledge(GroupRef group, std::uint32_t request, Owner owner) noexcept = 0;
 
 protected:
     ~GroupAccess() = default;

@@ -8,6 +8,7 @@
 #include "axes/axis/command.hpp"
 #include "axes/group/equipment_settings.hpp"
 #include "axes/group/group_types.hpp"
+#include "axes/group/path_types.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -21,6 +22,7 @@ enum class GroupCommandKind : std::uint8_t {
     circular_relative,
     direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
     direct_relative,
+    path,  ///< a stored path, as it was prepared
     jog,   ///< target = direction by slot; goes on while it is held (HoldJog), never waits
     wait,  ///< duration
     halt,
@@ -96,6 +98,8 @@ struct GroupCommand {
     MC_ExecutionMode execution = mcImmediately;  ///< of set_frame, write_tool
     std::uint8_t number = 0;                     ///< of the tool
     Tool tool{};
+    PathRef path{};                  ///< GroupCommandKind::path
+    std::uint32_t ticket = 0;        ///< of its selection
     const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
     friend bool operator==(const GroupCommand&, const GroupCommand&) = default;
 };

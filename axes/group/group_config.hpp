@@ -19,6 +19,7 @@ struct AxisGroupConfig {
     std::vector<std::string> members{};              ///< in the order of their identifiers 1, 2, ...; a program may add others
     std::shared_ptr<const Kinematics> kinematics{};  ///< its joints are the members, in their order; nullptr: ACS only
     GroupEquipment equipment{};                      ///< frames, tools, payloads at the beginning; its `arm` is filled by the group
+    double millimetre = 1;                           ///< in the unit of its paths: what stored paths are written in
     PathDynamics default_dynamics{};                 ///< 0 = what the axes' limits leave on a path
 };
 

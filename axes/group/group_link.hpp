@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "axes/group/group_command.hpp"
+#include "axes/group/path_note.hpp"
 #include "axes/group/way_point.hpp"
 #include "axes/path_time/stretch_exchange.hpp"
 #include "axes/pose.hpp"
@@ -38,10 +39,11 @@ struct GroupOrder {
     std::array<MemberLimits, max_path_axes> limits{};
 
     CommandId id = 0;
-    GroupCommand command{};  ///< target by rank; dynamics resolved
-    MemberVector target{};  ///< of a jog: where the members were when it was pressed
-    CommandPlace place{};   ///< as it was accepted
-    bool joins = false;     ///< may be blended with the one before it
+    GroupCommand command{};              ///< target by rank; dynamics resolved
+    MemberVector target{};               ///< of a jog: where the members were when it was pressed
+    CommandPlace place{};                ///< as it was accepted
+    bool joins = false;                  ///< may be blended with the one before it
+    std::uint32_t line = 0, number = 0;  ///< a piece of a stored path: where in its text
 
     bool stands = false;
     Override factors{};
@@ -59,13 +61,17 @@ struct GroupVerdict {
 
 struct RunTrack {
     /// Of all moves that can wait, each with its blend, twice over.
-    static constexpr std::size_t most_sections = 80;
+    static constexpr std::size_t usual_sections = 80;
+    explicit RunTrack(std::size_t most) : most_sections(most), sections(std::make_unique<RunSection[]>(most)) {}
 
-    std::array<RunSection, most_sections> sections{};  ///< by part modulo most_sections
+    const std::size_t most_sections;
+    const std::unique_ptr<RunSection[]> sections;  ///< by part modulo most_sections
     StretchExchange exchange;
     double begin = 0;
-    std::atomic<std::uint64_t> ready{0};  ///< life << 32 | first command: a stretch is offered
-    std::atomic<std::uint32_t> last{0};   ///< the last command on it
+    std::atomic<std::uint64_t> ready{0};  ///< life << 32 | number of the run, from 1: a stretch is offered
+    std::atomic<std::uint32_t> first{0};  ///< the first command on it
+    std::atomic<std::uint32_t> last{0};   ///< the last one so far
+    std::atomic<double> closed{0};        ///< s of its end, once nothing will be joined to it any more; else infinite
     // What the cycle tells.
     std::atomic<std::uint32_t> part{0};
     std::atomic<double> s{0}, velocity{0};
@@ -74,9 +80,12 @@ struct RunTrack {
 };
 
 struct GroupLink {
+    explicit GroupLink(std::size_t sections) : tracks{RunTrack{sections}, RunTrack{sections}} {}
+
     SpscRing<GroupOrder> orders{64};
     SpscRing<GroupVerdict> verdicts{64};
-    std::array<RunTrack, 2> tracks{};
+    SpscRing<PathNote> notes{64};
+    std::array<RunTrack, 2> tracks;
     std::atomic<std::uint64_t> at_run{0};  ///< life << 32 | runs begun in it
 
     [[nodiscard]] static constexpr std::uint64_t both(std::uint32_t life, std::uint32_t number) noexcept {

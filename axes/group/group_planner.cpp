@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "axes/path/transition.hpp"
 
@@ -11,6 +12,9 @@ namespace {
 PathFeed feed_of(const PathDynamics& d) noexcept {
     return {std::max(d.velocity, 0.0), std::max(d.acceleration, 0.0), std::max(d.deceleration, 0.0), std::max(d.jerk, 0.0)};
 }
+
+/// Pieces of nearly one length would leave straight parts of a millionth between their curves, around which time is planned in cells of that size.
+constexpr double share_of_short_pieces = 0.45;
 
 /// Braking from v, limited in jerk.
 double stopping_way(double v, double a, double j) noexcept {
@@ -27,6 +31,7 @@ void GroupPlanner::restart(const GroupOrder& order) {
     ++revision_;
     moves_.clear();
     first_.reset();
+    walk_.reset();
     runs_ = {};
     for (auto& track : link_.tracks) track.ready.store(0, std::memory_order_release);
     next_ = 0;
@@ -61,6 +66,11 @@ void GroupPlanner::step() {
 void GroupPlanner::place_moves() {
     while (!moves_.empty()) {
         const GroupOrder& move = moves_.front();
+        if (move.command.kind == GroupCommandKind::path) {
+            if (!walk(move)) return;
+            moves_.pop_front();
+            continue;
+        }
         if (!first_) first_ = shape_of(move, end_, space_);
         if (first_->error != ErrorId::none || first_->empty) say(move.id, first_->error);
         else if (!place(move, *first_)) return;  // later: no track is free yet
@@ -79,7 +89,7 @@ bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
     const bool joins = run != nullptr && run->open && move.joins && fits(run->curve.seen.back().run);
     if (joins) {
         const std::uint32_t behind = run->curve.forgotten + static_cast<std::uint32_t>(run->curve.seen.size());
-        if (behind + 2 - run->track.part.load(std::memory_order_relaxed) >= RunTrack::most_sections) return false;
+        if (behind + 2 - run->track.part.load(std::memory_order_relaxed) >= run->track.most_sections) return false;
         if (append(*run, move, shape, true)) return true;
     }
     if (run != nullptr) run->open = false;
@@ -92,11 +102,14 @@ bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
     track.part.store(0, std::memory_order_relaxed);
     track.s.store(0, std::memory_order_relaxed);
     track.velocity.store(0, std::memory_order_relaxed);
+    track.closed.store(std::numeric_limits<double>::infinity(), std::memory_order_relaxed);
+    track.first.store(move.id, std::memory_order_relaxed);
     auto& made = runs_[next_ % 2];
     made = std::make_unique<Run>(space_, track, lead_);
     made->first = move.id;
     made->rolls = move.command.kind == GroupCommandKind::jog;
-    ++next_;
+    made->pulled = move.command.kind == GroupCommandKind::path;
+    made->number = ++next_;
     return append(*made, move, shape, false);
 }
 
@@ -130,14 +143,15 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     element.chart = shape.chart;
     element.feed = shape.feed ? *shape.feed : feed_of(move.command.dynamics);
     element.command = move.id;
-    const BlendRequest request = blended ? blend_of(run, move, shape) : BlendRequest{};
-    const Path kept = blended ? curve.path : Path{};
+    BlendRequest request = blended ? blend_of(run, move, shape) : BlendRequest{};
+    if (run.pulled) request.share = share_of_short_pieces;
+    const Path::Mark kept = curve.path.mark();
     const std::size_t known = curve.seen.size();
     const double before_velocity = known > 0 ? curve.path.sections().back().feed.velocity : 0;
     const auto joint = curve.path.append(element, request, run.final_end);
     if (!joint.ok()) return false;
     if (joint.value() == PathJoint::stop) {  // a corner at rest ends a run: its point is stood at, exactly
-        curve.path = kept;
+        curve.path.back_to(kept);
         return false;
     }
     RunCurve::Seen corner;
@@ -152,6 +166,8 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
         corner.run.way = shape.element.length();
         corner.run.rest = all.back().length;
         corner.run.to = shape.end.members;
+        corner.run.line = move.line;
+        corner.run.number = move.number;
         corner.run.section.command = move.id;
         corner.members = {end_.members};
         const double one = before_velocity;
@@ -165,7 +181,7 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     fill();
     if (corner.run.section.command != 0 &&
         refuse_blend(curve.path.sections()[curve.path.sections().size() - 2], corner.run, end_, space_) != ErrorId::none) {
-        curve.path = kept;  // the corner itself is sound: it is stood at
+        curve.path.back_to(kept);  // the corner itself is sound: it is stood at
         return false;
     }
     const auto& all = curve.path.sections();
@@ -180,6 +196,8 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     seen.run.corner = all.back().begin + all.back().length;
     seen.run.way = shape.element.length();
     seen.run.to = shape.end.members;
+    seen.run.line = move.line;
+    seen.run.number = move.number;
     seen.members = shape.members;
     curve.seen.push_back(seen);
     run.track.last.store(move.id, std::memory_order_release);
@@ -206,6 +224,8 @@ double GroupPlanner::final_end(const Run& run) const {
     if (!run.open || run.final_end >= full) return full;
     const auto& section = run.curve.path.sections().back();
     const double half = full - std::min(section.element.length() / 2, section.length);
+    // What comes behind a piece of a stored path is known, only later where the planner is slow: that must not bend it.
+    if (run.pulled) return std::max(half, run.final_end);
     const double s = std::max(run.track.s.load(std::memory_order_relaxed), run.curve.begin());
     const AlongLimits l = run.curve.along(std::min(std::max(s, section.begin), full));
     const double soon = 6 * run.service.lead();
@@ -215,14 +235,15 @@ double GroupPlanner::final_end(const Run& run) const {
 
 void GroupPlanner::publish(Run& run) {
     const auto& all = run.curve.path.sections();
-    for (std::size_t i = 0; i < all.size() && all[i].begin < run.final_end; ++i) {
+    const std::size_t known = run.published > run.curve.forgotten ? run.published - run.curve.forgotten : 0;
+    for (std::size_t i = known; i < all.size() && all[i].begin < run.final_end; ++i) {
         const std::uint32_t part = run.curve.forgotten + static_cast<std::uint32_t>(i);
-        if (part < run.published) continue;
-        RunSection& slot = run.track.sections[part % RunTrack::most_sections];
+        RunSection& slot = run.track.sections[part % run.track.most_sections];
         slot = run.curve.seen[i].run;
         slot.section = all[i];
         run.published = part + 1;
     }
+    if (!run.open) run.track.closed.store(run.curve.path.length(), std::memory_order_release);
 }
 
 void GroupPlanner::feed(Run& run) {
@@ -237,7 +258,7 @@ void GroupPlanner::feed(Run& run) {
     const PathAnswer answer = run.service.step(run.curve, run.final_end, wish);
     if (answer == PathAnswer::offered && !run.offered) {
         run.offered = true;
-        run.track.ready.store(GroupLink::both(life_, run.first), std::memory_order_release);
+        run.track.ready.store(GroupLink::both(life_, run.number), std::memory_order_release);
     }
     if (answer == PathAnswer::stuck && !run.said_stuck) {
         run.said_stuck = true;

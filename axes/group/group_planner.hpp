@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "axes/group/move_shape.hpp"
+#include "axes/group/path_segment.hpp"
+#include "axes/group/path_shelf.hpp"
 #include "axes/group/run_curve.hpp"
 #include "axes/path_time/path_service.hpp"
 
@@ -15,7 +17,9 @@ namespace taktwerk::axes {
 class GroupPlanner {
 public:
     /// `lead` [s]: how soon a plan made now can be in the cycle.
-    GroupPlanner(GroupLink& link, const Kinematics* arm, double lead) : link_(link), arm_(arm), lead_(lead) {}
+    /// `paths`: the stored ones; nullptr: there are none. `millimetre`: in u.
+    GroupPlanner(GroupLink& link, const Kinematics* arm, double lead, const PathShelf* paths, double millimetre)
+        : link_(link), arm_(arm), lead_(lead), paths_(paths), millimetre_(millimetre) {}
 
     void step();
 
@@ -29,12 +33,28 @@ private:
         PathService service;
         RunTrack& track;
         std::uint32_t first = 0;
-        bool open = true;      // a later move may join
-        bool offered = false;  // its first stretch
+        std::uint32_t number = 0;  // of this run in its life, from 1
+        bool pulled = false;       // of a stored path: what comes behind does not depend on the time
+        bool open = true;          // a later move may join
+        bool offered = false;      // its first stretch
         bool said_stuck = false;
         bool rolls = false;           // a jog: planned as far as it goes soon
         std::uint32_t published = 0;  // parts in front of it are the track's
         double final_end = 0;
+    };
+
+    /// A stored path that is being pulled.
+    struct Walk {
+        CommandId id = 0;
+        std::unique_ptr<PathSource> source;
+        PathItem item;
+        bool pending = false;  // the item is not placed yet
+        std::optional<MoveShape> shape;
+        SegmentPlace place;
+        PathItem::Joint joint = PathItem::Joint::stop;  // of the piece before
+        double deviation = 0;
+        bool resting = true;  // the next piece begins from rest
+        bool full = false;    // until there is room for many
     };
 
     void take(const GroupOrder& order);
@@ -44,11 +64,18 @@ private:
     [[nodiscard]] bool append(Run& run, const GroupOrder& move, const MoveShape& shape, bool blended);
     [[nodiscard]] BlendRequest blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
     void feed(Run& run);
+    /// True: all of it is placed.
+    [[nodiscard]] bool walk(const GroupOrder& move);
+    void open_path(const GroupOrder& move);
+    /// False: not now.
+    [[nodiscard]] bool place_piece(const GroupOrder& move);
+    [[nodiscard]] bool note();
+    [[nodiscard]] std::size_t room() const noexcept;
     [[nodiscard]] double final_end(const Run& run) const;
     [[nodiscard]] double rolling_end(const Run& run) const;
     void publish(Run& run);
     void say(CommandId id, ErrorId error, bool standing = false);
-    [[nodiscard]] Run* last() noexcept { return next_ == 0 ? nullptr : runs_[(next_ - 1) % 2].get(); }
+    [[nodiscard]] Run* last() const noexcept { return next_ == 0 ? nullptr : runs_[(next_ - 1) % 2].get(); }
 
     GroupLink& link_;
     const Kinematics* arm_;
@@ -62,6 +89,9 @@ private:
     MoveSpace space_;
     GroupOrder wish_;
     std::uint32_t revision_ = 0;
+    const PathShelf* paths_;
+    double millimetre_;
+    std::unique_ptr<Walk> walk_;
 };
 
 }  // namespace taktwerk::axes

@@ -6,6 +6,7 @@
 
 #include "axes/group/axis_group.hpp"
 #include "axes/group/motion_target.hpp"
+#include "axes/group/path_shelf.hpp"
 
 namespace taktwerk::axes {
 
@@ -53,6 +54,7 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
 }
 
 ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
+    if (command.kind == GroupCommandKind::path) return refuse_stored(command);
     if (command.orientation != mcLinear) return ErrorId::not_supported;
     if (is_circular(command.kind) && (command.circle.mode > mcRADIUS || !(command.circle.tolerance >= 0)))
         return ErrorId::invalid_parameter;
@@ -65,6 +67,17 @@ ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
     const auto at = here();
     if (const auto error = refuse_target(command, target_of(command, at, members_), members_); error != ErrorId::none) return error;
     return refuse_reach(command, place_of(command), at, config_.kinematics.get());
+}
+
+/// The stored path itself was looked through when it was selected; what only its places show, the planner says where it comes to them.
+ErrorId AxisGroup::refuse_stored(const GroupCommand& command) const noexcept {
+    if (command.transition != mcTMNone || command.frame == mcACS) return ErrorId::not_supported;
+    if (const auto error = refuse_frame(command, config_.kinematics.get(), members_); error != ErrorId::none) return error;
+    if (!command.path.valid()) return ErrorId::path_not_selected;
+    const auto* state = paths_ != nullptr ? paths_->state(command.path) : nullptr;
+    if (state == nullptr) return ErrorId::invalid_parameter;
+    if (state->kind != PathState::Kind::ready || state->ticket != command.ticket) return ErrorId::path_not_selected;
+    return refuse_target(command, here(), members_);
 }
 
 ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexcept {

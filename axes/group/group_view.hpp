@@ -49,6 +49,8 @@ struct GroupView {
     Duration remaining{};  ///< as planned now; 0 where nobody can say
     double remaining_distance = 0, progress = 0;
 
+    PathView path{};
+
     CommandId lock = 0;  ///< the MC_GroupStop that holds the group
     CommandId interrupting = 0, disabling = 0;
     std::uint8_t queued_count = 0;

@@ -103,6 +103,17 @@ Result<PathElement> arc_of(const GroupOrder& move, const Pose& start, const Path
 
 /// Everywhere along it: reached by the same way of the arm, inside the limits, not singular.
 void walk(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space) {
+    constexpr int least = 64, most = 2048;
+    const double length = shape.element.length();
+    const double size = std::max(shape.element.feature(length / 2) / 2, length / most);
+    walk_along(shape, carried, from, space, std::clamp(static_cast<int>(std::min(length / size, 1.0 * most)), least, most));
+}
+
+}  // namespace
+
+PathChart chart_at(const Pose& pose, const Kinematics& arm) noexcept { return {pose.orientation, turns(arm) ? turn_lever : 0}; }
+
+void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space, int steps) {
     PathSection whole;
     whole.element = shape.element;
     whole.chart = shape.chart;
@@ -111,9 +122,6 @@ void walk(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, con
     run.through_arm = true;
     run.carried = carried;
     run.configuration = from.configuration;
-    constexpr int least = 64, most = 2048;
-    const double size = std::max(shape.element.feature(whole.length / 2) / 2, whole.length / most);
-    const int steps = std::clamp(static_cast<int>(std::min(whole.length / size, 1.0 * most)), least, most);
     MemberVector near = from.members;
     for (int i = 0; i <= steps; ++i) {
         const WayPoint w = way_point(whole, run, whole.length * i / steps, space.arm, space.members, near);
@@ -126,8 +134,6 @@ void walk(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, con
     }
     shape.end = {near, from.configuration};
 }
-
-}  // namespace
 
 MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
     const auto kind = move.command.kind;
@@ -154,7 +160,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
 
     MoveShape shape;
     shape.through_arm = true;
-    shape.chart = {start.orientation, turns(*space.arm) ? turn_lever : 0};
+    shape.chart = chart_at(start, *space.arm);
     const Eigen::Vector3d turn = rotation_between(orientation_of(start), orientation_of(goal));
     if (turn.norm() > std::numbers::pi - 1e-9) return refused(ErrorId::half_turn);  // G-043: which way round is nobody's choice
     PathVector a = PathVector::Zero(), b = PathVector::Zero();

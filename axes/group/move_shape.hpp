@@ -35,6 +35,12 @@ struct MoveSpace {
 /// Errors: out_of_reach, singular_path, beyond_software_limit, invalid_arc, half_turn, no_kinematics.
 [[nodiscard]] MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space);
 
+/// Everywhere along its element, in so many steps: reached by the same way of the arm, inside the limits, not singular. Fills `members` and `end`, or `error`.
+void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space, int steps);
+
+/// Of a path that begins with this pose.
+[[nodiscard]] PathChart chart_at(const Pose& pose, const Kinematics& arm) noexcept;
+
 /// A blend's points, likewise. none: it can be gone.
 [[nodiscard]] ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveEnd& near, const MoveSpace& space);
 

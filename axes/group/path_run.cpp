@@ -13,6 +13,8 @@ namespace {
 /// How soon a plan can be in the cycle, s, and in cycles at least. Plans that take longer make it grow.
 constexpr double least_lead = 0.008;
 constexpr double least_lead_cycles = 4;
+/// How far a stored path is known ahead: what braking takes has to fit, also in short pieces. Some 5 MB a track.
+constexpr std::size_t sections_of_stored_paths = 4096;
 /// A part of a limit that counts as using it.
 constexpr double in_use = 0.98;
 
@@ -47,8 +49,10 @@ void cap(MemberLimits& m, const JoggingDynamics& caps, std::size_t place) noexce
 }  // namespace
 
 struct PathRun::Inside {
-    Inside(std::shared_ptr<const Kinematics> its_arm, Duration its_cycle)
-        : arm(std::move(its_arm)), planner(link, arm.get(), std::max(least_lead, least_lead_cycles * to_seconds(its_cycle))) {}
+    Inside(std::shared_ptr<const Kinematics> its_arm, Duration its_cycle, const PathShelf* paths, double millimetre)
+        : link(paths != nullptr ? sections_of_stored_paths : RunTrack::usual_sections),
+          arm(std::move(its_arm)),
+          planner(link, arm.get(), std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)), paths, millimetre) {}
 
     GroupLink link;
     std::shared_ptr<const Kinematics> arm;
@@ -66,12 +70,15 @@ struct PathRun::Inside {
     std::size_t members = 0;
     MemberVector q{}, velocity{}, acceleration{};
     WayPoint at;
+    PathNote note;
+    bool noted = false;
     std::array<GroupVerdict, 32> verdicts{};
     std::size_t next_verdict = 0;
     std::uint32_t late = 0;
 };
 
-PathRun::PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle) : inside_(std::make_unique<Inside>(std::move(arm), cycle)) {}
+PathRun::PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle, const PathShelf* paths, double millimetre)
+    : inside_(std::make_unique<Inside>(std::move(arm), cycle, paths, millimetre)) {}
 PathRun::PathRun(PathRun&&) noexcept = default;
 PathRun::~PathRun() = default;
 
@@ -181,15 +188,49 @@ bool PathRun::begin(CommandId id) noexcept {
         arrived_ = false;
         return true;
     }
+    const RunTrack& next = in.link.tracks[in.begun % 2];
+    const bool ready = next.ready.load(std::memory_order_acquire) == GroupLink::both(in.life, in.begun + 1);
+    if (!ready || next.first.load(std::memory_order_relaxed) != id) return false;
+    take_track();
+    return true;
+}
+
+/// Onto the run that is prepared.
+void PathRun::take_track() noexcept {
+    auto& in = *inside_;
     RunTrack& next = in.link.tracks[in.begun % 2];
-    if (next.ready.load(std::memory_order_acquire) != GroupLink::both(in.life, id)) return false;
     if (in.player) in.late += in.player->late();
     in.track = &next;
     in.player.emplace(next.exchange, 0.0);
     ++in.begun;
     in.link.at_run.store(GroupLink::both(in.life, in.begun), std::memory_order_release);
     arrived_ = false;
-    return true;
+}
+
+bool PathRun::at_end_of_run() const noexcept {
+    const auto& in = *inside_;
+    return !in.player || (in.player->standing() && s_.position >= in.track->closed.load(std::memory_order_acquire) * (1 - 1e-12));
+}
+
+const PathNote* PathRun::note() noexcept {
+    auto& in = *inside_;
+    while (!in.noted && in.link.notes.try_pop(in.note)) in.noted = in.note.life == in.life;
+    if (!exists_ || !in.noted) return nullptr;
+    const auto& n = in.note;
+    if (n.kind != PathNote::Kind::tell) return n.run == in.begun && at_end_of_run() ? &n : nullptr;
+    const bool passed = in.begun > n.run + 1 || (in.begun == n.run + 1 && in.player && (in.player->part() >= n.part || at_end_of_run()));
+    return passed || (in.begun == n.run && at_end_of_run()) ? &n : nullptr;
+}
+
+void PathRun::drop_note() noexcept { inside_->noted = false; }
+
+void PathRun::go_over(CommandId id) noexcept {
+    auto& in = *inside_;
+    const bool first = in.noted && in.note.run == in.begun;  // that is in front of it
+    if (!exists_ || stops_ || first || !at_end_of_run()) return;
+    const RunTrack& next = in.link.tracks[in.begun % 2];
+    const bool ready = next.ready.load(std::memory_order_acquire) == GroupLink::both(in.life, in.begun + 1);
+    if (ready && next.first.load(std::memory_order_relaxed) == id) take_track();
 }
 
 void PathRun::clear() noexcept {
@@ -198,8 +239,10 @@ void PathRun::clear() noexcept {
     in.player.reset();
     in.track = nullptr;
     in.verdicts = {};
+    in.noted = false;
     s_ = {};
     command_ = 0;
+    line_ = number_ = 0;
     length_ = remaining_ = 0;
     exists_ = arrived_ = stops_ = false;
     stuck_ = fault_ = ErrorId::none;
@@ -239,6 +282,8 @@ void PathRun::look() noexcept {
     const bool before = run.section.blend && s < run.section.begin + run.section.length / 2;
     command_ = before ? run.before : run.section.command;
     carried_ = run.carried;
+    line_ = run.line;
+    number_ = run.number;
     arrived_ = in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
     length_ = before ? run.section.length / 2 : run.way;
     remaining_ = before              ? run.section.begin + run.section.length / 2 - s

@@ -19,10 +19,14 @@
 namespace taktwerk::axes {
 
 class Kinematics;
+class PathShelf;
+struct PathNote;
+struct Pose;
 
 class PathRun {
 public:
-    PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle);
+    /// `paths`: stored ones; nullptr: there are none. `millimetre`: in u.
+    PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle, const PathShelf* paths, double millimetre);
     PathRun(PathRun&&) noexcept;
     ~PathRun();
 
@@ -41,6 +45,17 @@ public:
     [[nodiscard]] std::optional<ErrorId> verdict(CommandId id) noexcept;
     /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
     [[nodiscard]] bool begin(CommandId id) noexcept;
+    // Of a stored path, which is gone in many runs:
+    /// What is to be done now, before the set-point goes on; nullptr: nothing.
+    [[nodiscard]] const PathNote* note() noexcept;
+    /// It is done.
+    void drop_note() noexcept;
+    /// At rest at the end of a run, to the next one if it is prepared.
+    void go_over(CommandId id) noexcept;
+    /// The line of its text that is carried out, and the N word of that.
+    [[nodiscard]] std::uint32_t line() const noexcept { return line_; }
+    [[nodiscard]] std::uint32_t number() const noexcept { return number_; }
+
     /// Nothing to run; the members stand.
     void clear() noexcept;
 
@@ -88,6 +103,8 @@ private:
     struct Inside;
     void tell() noexcept;
     void stand(const PathDynamics& ramp, bool own, const Override& factors) noexcept;
+    void take_track() noexcept;
+    [[nodiscard]] bool at_end_of_run() const noexcept;
     void look() noexcept;
     void see_limits() noexcept;
 
@@ -97,6 +114,7 @@ private:
     MotionState s_;
     CommandId command_ = 0;
     CarriedTool carried_{};
+    std::uint32_t line_ = 0, number_ = 0;
     double length_ = 0, remaining_ = 0;
     bool exists_ = false, arrived_ = false;
     bool stops_ = false;  // the goal is rest, not the end

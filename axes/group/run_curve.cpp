@@ -21,7 +21,7 @@ RunCurve::RunCurve(const Kinematics* arm, std::size_t members, std::span<const M
 
 void RunCurve::forget_before(std::uint32_t part) {
     const std::size_t count = std::min<std::size_t>(part > forgotten ? part - forgotten : 0, seen.empty() ? 0 : seen.size() - 1);
-    if (count < RunTrack::most_sections) return;  // now and then
+    if (count < std::max(RunTrack::usual_sections, seen.size() / 2)) return;  // now and then
     path.forget(count);
     seen.erase(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(count));
     forgotten += static_cast<std::uint32_t>(count);

@@ -18,14 +18,15 @@ using MemberVector = std::array<double, max_path_axes>;
 /// A section of a path as the cycle goes it.
 struct RunSection {
     PathSection section;
-    bool through_arm = false;     ///< its points are poses; else they are the members themselves
-    CarriedTool carried{};        ///< of whose point they are poses
-    Configuration configuration;  ///< which way of the arm holds along it
-    std::uint32_t before = 0;     ///< of a blend: the command that it comes from
-    double corner = 0;            ///< s at which its command ends, were it not blended
-    double way = 0;               ///< length of its command's own element
-    double rest = 0;              ///< what is left of that behind this section, where it is a blend
-    MemberVector to{};            ///< where its command ends, to the last bit
+    bool through_arm = false;            ///< its points are poses; else they are the members themselves
+    CarriedTool carried{};               ///< of whose point they are poses
+    Configuration configuration;         ///< which way of the arm holds along it
+    std::uint32_t before = 0;            ///< of a blend: the command that it comes from
+    double corner = 0;                   ///< s at which its command ends, were it not blended
+    double way = 0;                      ///< length of its command's own element
+    double rest = 0;                     ///< what is left of that behind this section, where it is a blend
+    MemberVector to{};                   ///< where its command ends, to the last bit
+    std::uint32_t line = 0, number = 0;  ///< of a stored path: where in its text
 };
 
 struct WayPoint {

@@ -18,6 +18,7 @@ enum class BlendRule : std::uint8_t {
 struct BlendRequest {
     BlendRule rule = BlendRule::none;
     double parameter = 0;  ///< u of the path's metric, >= 0
+    double share = 0.5;    ///< of each element, that it may take at most
 };
 
 struct Blend {

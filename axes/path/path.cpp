@@ -72,8 +72,8 @@ Result<PathJoint> Path::append(const PathMove& move, const BlendRequest& transit
     const PathVector end = last.element.at(last.element.length()).at, begin = move.element.at(0).at;
     const PathElement first = last.element.shifted(to_corner(last.chart, end)), second = move.element.shifted(to_corner(move.chart, begin));
     // Half of each is left to the blend at its other end; what is frozen stays.
-    const double room = std::min({last.element.length() / 2, last.length, last.end() - frozen});
-    const auto curve = blend(first, second, transition, room, move.element.length() / 2);
+    const double room = std::min({last.element.length() * transition.share, last.length, last.end() - frozen});
+    const auto curve = blend(first, second, transition, room, move.element.length() * transition.share);
     if (curve) {
         const bool whole = transition.rule == BlendRule::corner_distance ? curve->before >= transition.parameter * (1 - 1e-9)
                                                                          : curve->deviation >= transition.parameter * (1 - 1e-6);

@@ -67,6 +67,17 @@ public:
     /// Takes out the first `count` sections, which nobody goes any more; the others stay where they are.
     void forget(std::size_t count) { sections_.erase(sections_.begin(), sections_.begin() + static_cast<std::ptrdiff_t>(count)); }
 
+    /// To take an append() back.
+    struct Mark {
+        std::size_t count = 0;
+        PathSection last{};
+    };
+    [[nodiscard]] Mark mark() const noexcept { return sections_.empty() ? Mark{} : Mark{sections_.size(), sections_.back()}; }
+    void back_to(const Mark& mark) {
+        sections_.resize(mark.count);
+        if (mark.count > 0) sections_.back() = mark.last;
+    }
+
     void clear() noexcept { sections_.clear(); }
 
 private:

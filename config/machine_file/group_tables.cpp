@@ -231,6 +231,8 @@ Table<GroupEntry> group_table() {
 
 axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std::map<std::string, std::string, std::less<>>& units) {
     auto group = entry.group;
+    if (const auto mm = parse_quantity("1 mm", Dimension::position, entry.unit); mm.problem == QuantityProblem::none)
+        group.millimetre = mm.value;
     if (!entry.arm || !entry.arm->arm) return group;
     const std::string here = "groups." + group.name + ".kinematics";
     const auto& written = *entry.arm;

@@ -93,6 +93,10 @@ public:
             out.warnings.insert(out.warnings.end(), entry.remarks.begin(), entry.remarks.end());
         }
         for (const auto& entry : file_.groups) out.machine.axis_groups.push_back(made_of(reader_, entry, reader_.units_of_axes));
+        for (auto& entry : file_.paths) {
+            complete(reader_, entry, fs::path(path_).parent_path().string());
+            out.machine.paths.push_back(entry.path);
+        }
         list_files(out);
         check_wiring(out.machine);
         check_events(out.machine);
@@ -403,6 +407,10 @@ private:
         };
         for (const auto& entry : file_.cams)
             if (!entry.file.empty()) add(UsedFile::Kind::cam, entry.file, beside(entry.file));
+        for (const auto& entry : file_.paths) {
+            if (!entry.path.file.empty()) add(UsedFile::Kind::path, entry.path.file, beside(entry.path.file));
+            if (!entry.tables.empty()) add(UsedFile::Kind::path, entry.tables, beside(entry.tables));
+        }
         for (const auto& view : out.hmi.views)
             for (const auto& row : view.rows)
                 for (const auto& widget : row)

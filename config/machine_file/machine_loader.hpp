@@ -32,7 +32,7 @@ struct LoadOptions {
 
 /// A file that a machine is made of, besides its own.
 struct UsedFile {
-    enum class Kind : std::uint8_t { drive, device, program, cam, image };
+    enum class Kind : std::uint8_t { drive, device, program, cam, path, image };
     Kind kind;
     std::string written;  ///< as the machine file names it; drive, device: the file's name, with its ending
     std::string path;     ///< where it was found

@@ -622,6 +622,8 @@ Table<MachineFile> machine_table() {
         "what programs move; none: only a bus"));
     f.push_back(field("groups", &F::groups, by_name(section(group_table()), [](GroupEntry& g) -> std::string& { return g.group.name; }),
                       "axes that move together on a path"));
+    f.push_back(field("paths", &F::paths, by_name(section(path_table()), [](PathEntry& p) -> std::string& { return p.path.name; }),
+                      "programs in G-code that groups go"));
     f.push_back(field("cams", &F::cams, by_name(section(cam_table()), [](CamEntry& c) -> std::string& { return c.cam.name; }),
                       "tables that slaves follow; programs may declare others"));
     f.push_back(field("programs", &F::programs,

@@ -8,6 +8,7 @@
 #include "config/machine_file/bus_tables.hpp"
 #include "config/machine_file/cam_tables.hpp"
 #include "config/machine_file/group_tables.hpp"
+#include "config/machine_file/path_tables.hpp"
 #include "config/reading/measure.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "runtime/machine_config.hpp"
@@ -71,6 +72,7 @@ struct MachineFile {
     std::vector<IoEntry> inputs, outputs;
     std::vector<CamEntry> cams;
     std::vector<GroupEntry> groups;
+    std::vector<PathEntry> paths;
     std::vector<ProgramFile> programs;
 };
 

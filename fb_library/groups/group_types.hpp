@@ -26,6 +26,8 @@ using axes::MC_CIRC_PATHCHOICE;
 using enum axes::MC_CIRC_PATHCHOICE;
 using axes::MC_OrientationMode;
 using enum axes::MC_OrientationMode;
+using axes::MC_PATH_REQUEST;
+using enum axes::MC_PATH_REQUEST;
 
 /// One number a member, by IdentInGroup from 1 on.
 using AxisValues = axes::JointVector;
@@ -93,6 +95,17 @@ struct MC_GROUP_SWLIMITS {
     std::array<Limits, axes::most_members> Axes{};
 };
 
+/// A stored path of the machine, and how it is to be gone.
+struct MC_PATH_REF {
+    axes::PathRef Path{};
+    axes::PathOptions Options{};
+};
+/// A path that MC_PathSelect has prepared.
+struct MC_PATH_DATA_REF {
+    axes::PathRef path{};
+    std::uint32_t ticket = 0;
+};
+
 enum MC_CommandState : std::uint8_t { mcAccepted, mcActive };
 
 namespace detail {
@@ -104,6 +117,11 @@ inline constexpr std::array<std::string_view, 5> transition_velocity_names{"mcTV
 inline constexpr std::array<std::string_view, 4> orientation_mode_names{"mcLinear", "mcJointInterpolated", "mcFixed", "mcPathBased"};
 inline constexpr std::array<std::string_view, 3> circ_mode_names{"mcBORDER", "mcCENTER", "mcRADIUS"};
 inline constexpr std::array<std::string_view, 2> circ_path_choice_names{"mcClockwise", "mcCounterClockwise"};
+inline constexpr std::array<std::string_view, 15> path_request_names{
+    "mcPathNothing",        "mcPathStop",         "mcPathOptionalStop", "mcPathBlockStop",
+    "mcPathResume",         "mcPathToolPrepare",  "mcPathToolChange",   "mcPathSpindleClockwise",
+    "mcPathSpindleCounter", "mcPathSpindleSpeed", "mcPathSpindleOff",   "mcPathMist",
+    "mcPathFlood",          "mcPathCoolantOff",   "mcPathUser"};
 inline constexpr std::array<std::string_view, 2> command_state_names{"mcAccepted", "mcActive"};
 }  // namespace detail
 
@@ -124,6 +142,9 @@ template <> struct PinTypeOf<MC_TransitionVelocity> { static constexpr PinType v
 template <> struct PinTypeOf<MC_OrientationMode> { static constexpr PinType value{PinKind::ENUM, "MC_ORIENTATION_MODE", detail::orientation_mode_names}; };
 template <> struct PinTypeOf<MC_CIRC_MODE> { static constexpr PinType value{PinKind::ENUM, "MC_CIRC_MODE", detail::circ_mode_names}; };
 template <> struct PinTypeOf<MC_CIRC_PATHCHOICE> { static constexpr PinType value{PinKind::ENUM, "MC_CIRC_PATHCHOICE", detail::circ_path_choice_names}; };
+template <> struct PinTypeOf<MC_PATH_REF> { static constexpr PinType value{PinKind::STRUCT, "MC_PATH_REF"}; };
+template <> struct PinTypeOf<MC_PATH_DATA_REF> { static constexpr PinType value{PinKind::STRUCT, "MC_PATH_DATA_REF"}; };
+template <> struct PinTypeOf<MC_PATH_REQUEST> { static constexpr PinType value{PinKind::ENUM, "MC_PATH_REQUEST", detail::path_request_names}; };
 template <> struct PinTypeOf<MC_CommandState> { static constexpr PinType value{PinKind::ENUM, "MC_COMMAND_STATE", detail::command_state_names}; };
 // clang-format on
 

@@ -20,8 +20,6 @@ inline constexpr std::array not_offered{
     NotOffered{"MC_GroupWriteReferenceDynamics", "not_supported: there is no mcPercentage yet that would read it"},
     NotOffered{"MC_GroupReadReferenceDynamics", "not_supported: there is no mcPercentage yet"},
     NotOffered{"MC_GroupWriteSWLimits", "not_supported: MC_WriteParameter of each axis; writing all or none is not written yet"},
-    NotOffered{"MC_PathSelect", "not_supported: stored paths come with the path planner"},
-    NotOffered{"MC_MovePath", "not_supported: stored paths come with the path planner"},
     NotOffered{"MC_SyncAxisToGroup", "not_supported: couplings to a path are not written yet"},
     NotOffered{"MC_SyncGroupToAxis", "not_supported: couplings to a path are not written yet"},
     NotOffered{"MC_SetDynCoordTransform", "not_supported: moving frames are not written yet"},

@@ -61,6 +61,8 @@ public:
     virtual AxisRef axis(std::string_view name) = 0;
     /// A group of axes (`axis_groups` of the machine), for the blocks of PLCopen Part 4. They are called in a base task.
     virtual axes::GroupRef axis_group(std::string_view name) = 0;
+    /// A program in G-code (`paths` of the machine), for MC_PathSelect.
+    virtual axes::PathRef path(std::string_view name) = 0;
     /// A slave of the bus, for its objects: EC_SdoRead, EC_SdoWrite, ObjectFuture.
     virtual DeviceRef device(std::string_view name) = 0;
     virtual Input<bool> input(std::string_view name) = 0;

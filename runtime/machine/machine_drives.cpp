@@ -7,6 +7,7 @@
 #include "axes/axis/alarms.hpp"
 #include "axes/drives/cia402/own_modes.hpp"
 #include "axes/sim/virtual_drive.hpp"
+#include "fb_library/gcode_path/gcode_path.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
 namespace taktwerk::runtime {
@@ -92,7 +93,9 @@ void MachineDrives::build_axes() {
                 brakes_.push_back({i, static_cast<std::size_t>(output)});
         body_.axes.emplace_back(axis, *ports_[i], config.cycle, static_cast<std::uint16_t>(i), &body_.views[i]);
     }
-    body_.axis_groups.build(config.axis_groups, body_.axes, config.cycle);
+    std::vector<std::unique_ptr<axes::PathMaker>> paths;
+    for (const auto& path : config.paths) paths.push_back(std::make_unique<gcode::GcodePathMaker>(path.text, path.options));
+    body_.axis_groups.build(config.axis_groups, body_.axes, config.cycle, std::move(paths));
     body_.requests = WatchedRequests{body_.axes};
 }
 

@@ -42,6 +42,13 @@ public:
                                               axes::MC_Source source) const noexcept override {
         return groups_.velocity_in(group, frame, source);
     }
+    axes::Submitted select(axes::GroupRef group, axes::PathRef path, const axes::PathOptions& options) noexcept override {
+        return groups_.select(group, path, options);
+    }
+    [[nodiscard]] const axes::PathState* path(axes::PathRef path) const noexcept override { return groups_.path(path); }
+    axes::ErrorId acknowledge(axes::GroupRef group, std::uint32_t request, axes::Owner owner) noexcept override {
+        return groups_.acknowledge(group, request, owner);
+    }
     [[nodiscard]] axes::GroupRef group_of(axes::AxisRef axis) const noexcept override { return groups_.group_of(axis); }
 
 private:

@@ -52,6 +52,15 @@ public:
         unknown("program.unknown_axis_group", "group of axes", name, names, "axis_groups");
         return {};
     }
+    axes::PathRef path(std::string_view name) override {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < config_.paths.size(); ++i) {
+            if (config_.paths[i].name == name) return {static_cast<std::uint16_t>(i)};
+            names.push_back(config_.paths[i].name);
+        }
+        unknown("program.unknown_path", "path", name, names, "paths");
+        return {};
+    }
     DeviceRef device(std::string_view name) override {
         std::vector<std::string> names;
         const auto slaves = present_slaves(config_);

@@ -44,7 +44,8 @@ struct GroupRig {
     /// One group "g" of all axes; it is not enabled yet.
     explicit GroupRig(std::vector<AxisConfig> configs, Arm kinematics = {}) : GroupRig(configs, all_of(configs, kinematics)) {}
     explicit GroupRig(std::size_t count, Arm kinematics = {}) : GroupRig(named(count), kinematics) {}
-    GroupRig(const std::vector<AxisConfig>& configs, const std::vector<AxisGroupConfig>& grouped) {
+    GroupRig(const std::vector<AxisConfig>& configs, const std::vector<AxisGroupConfig>& grouped,
+             std::vector<std::unique_ptr<PathMaker>> paths = {}) {
         for (std::size_t i = 0; i < configs.size(); ++i) drives.push_back(std::make_unique<FakeDrive>(cycle));
         axes.reserve(configs.size());
         for (std::size_t i = 0; i < configs.size(); ++i) {
@@ -54,7 +55,7 @@ struct GroupRig {
         for (auto& axis : axes) axis.bind({axes.data(), axes.size(), nullptr, {}});
         powered.assign(configs.size(), true);
         before.resize(configs.size());
-        groups.build(grouped, axes, cycle);
+        groups.build(grouped, axes, cycle, std::move(paths));
         for (int i = 0; i < 30; ++i) step();
         for (std::size_t i = 0; i < axes.size(); ++i) EXPECT_EQ(axis(i).state, AxisState::Standstill) << i;
     }
@@ -95,7 +96,7 @@ struct GroupRig {
             look(i);
         }
         path.push_back(point());
-        groups.service();
+        if (path.size() % served_every == 0) groups.service();
     }
     bool until(const std::function<bool()>& condition, int most) {
         for (int i = 0; i < most && !condition(); ++i) step();
@@ -175,6 +176,7 @@ struct GroupRig {
         return worst;
     }
 
+    std::size_t served_every = 1;  ///< cycles
     Instant now{};
     std::vector<std::unique_ptr<FakeDrive>> drives;
     std::vector<Axis> axes;

@@ -12,7 +12,9 @@ namespace taktwerk::fb {
 
 struct GroupPlc {
     explicit GroupPlc(std::size_t count, axes::test::Arm kinematics = {}) : rig(count, kinematics) { bind(); }
-    GroupPlc(const std::vector<axes::AxisConfig>& configs, const std::vector<axes::AxisGroupConfig>& groups) : rig(configs, groups) {
+    GroupPlc(const std::vector<axes::AxisConfig>& configs, const std::vector<axes::AxisGroupConfig>& groups,
+             std::vector<std::unique_ptr<axes::PathMaker>> paths = {})
+        : rig(configs, groups, std::move(paths)) {
         bind();
     }
 

@@ -80,6 +80,7 @@ class Recorder final : public Declaration {
 public:
     AxisRef axis(std::string_view) override { return {}; }
     axes::GroupRef axis_group(std::string_view) override { return {}; }
+    axes::PathRef path(std::string_view) override { return {}; }
     DeviceRef device(std::string_view) override { return {}; }
     Input<bool> input(std::string_view) override { return {}; }
     Output<bool> output(std::string_view) override { return {}; }

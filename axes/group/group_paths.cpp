@@ -1,0 +1,100 @@
+// A stored path, in the cycle: what it asks for beside motion, in its turn. MC_MovePath.
+
+#include "axes/group/axis_group.hpp"
+#include "axes/group/path_note.hpp"
+#include "axes/group/path_shelf.hpp"
+
+namespace taktwerk::axes {
+
+void AxisGroup::walk_path(Duration period) noexcept {
+    PathView& shown = view_.path;
+    const auto& active = queue_.active();
+    elapsed_ += period;
+    shown.path = active.command.path;
+    if (run_.line() != 0) {
+        shown.line = run_.line();
+        shown.number = run_.number();
+    }
+    if (run_.stuck() != ErrorId::none && run_.over()) {
+        shown.place = {.error = run_.stuck(), .line = shown.line};
+        return queue_.finish_active(Outcome::error, run_.stuck());
+    }
+    const bool goes = interrupting_ == 0;
+    while (const PathNote* note = run_.note()) {
+        if (!serve(*note, goes ? period : Duration{})) return;
+        if (note->kind == PathNote::Kind::end) return queue_.finish_active(Outcome::done);
+        if (note->kind == PathNote::Kind::fault) return queue_.finish_active(Outcome::error, note->place.error);
+        const bool told = note->kind == PathNote::Kind::tell;
+        run_.drop_note();
+        if (told) return;  // one a cycle, or nobody sees it
+    }
+    if (goes) run_.go_over(active.id);
+}
+
+/// False: that takes longer.
+bool AxisGroup::serve(const PathNote& note, Duration period) noexcept {
+    PathView& shown = view_.path;
+    if (note.kind != PathNote::Kind::tell) {
+        shown.line = note.line;
+        shown.number = note.number;
+    }
+    switch (note.kind) {
+        case PathNote::Kind::tell:
+            shown.request = note.request;
+            ++shown.request_id;
+            return true;
+        case PathNote::Kind::dwell:
+            path_.dwelt += period;
+            if (to_seconds(path_.dwelt) < note.seconds) return false;
+            path_.dwelt = {};
+            return true;
+        case PathNote::Kind::ask:
+            if (path_.answered) {
+                path_.answered = shown.waits = false;
+                return true;
+            }
+            if (!shown.waits) {
+                shown.request = note.request;
+                ++shown.request_id;
+                shown.waits = true;
+            }
+            return false;
+        case PathNote::Kind::fault: shown.place = note.place; return true;
+        case PathNote::Kind::end: return true;
+    }
+    return true;
+}
+
+ErrorId AxisGroup::acknowledge(std::uint32_t request, Owner owner) noexcept {
+    if (members_.owned_by_other(owner)) return ErrorId::owned_by_other;
+    if (!view_.path.waits || request != view_.path.request_id) return ErrorId::unknown_command;
+    path_.answered = true;
+    return ErrorId::none;
+}
+
+/// Nobody goes the path any more.
+void AxisGroup::forget_path() noexcept {
+    path_ = {};
+    view_.path.waits = false;
+}
+
+void AxisGroup::selected(PathRef path) noexcept {
+    const bool on_path = queue_.active().command.kind == GroupCommandKind::path;
+    if (!on_path) view_.path = {.path = path, .request_id = view_.path.request_id};
+}
+
+/// What was wrong with a path that was selected.
+void AxisGroup::see_selection() noexcept {
+    const auto* state = paths_ != nullptr ? paths_->state(view_.path.path) : nullptr;
+    if (state != nullptr && state->kind == PathState::Kind::refused) view_.path.place = state->place;
+}
+
+bool AxisGroup::uses(PathRef path) const noexcept {
+    const auto is = [&](const AcceptedGroupCommand& c) { return c.command.kind == GroupCommandKind::path && c.command.path == path; };
+    if (queue_.has_active() && is(queue_.active())) return true;
+    for (std::size_t i = 0; i < queue_.waiting(); ++i)
+        if (is(queue_.waiting_at(i))) return true;
+    return false;
+}
+
+}  // namespace taktwerk::axes
