@@ -19,6 +19,7 @@ struct AxisGroupConfig {
     std::vector<std::string> members{};              ///< in the order of their identifiers 1, 2, ...; a program may add others
     std::shared_ptr<const Kinematics> kinematics{};  ///< its joints are the members, in their order; nullptr: ACS only
     PathDynamics default_dynamics{};                 ///< 0 = what the axes' limits leave on a path
+    std::string unit = "mm";                         ///< u of lengths and paths, for people
 };
 
 /// Every problem; `axes`: the names of the machine's axes. Codes: group.no_name, group.name_twice, group.too_many_members, group.unknown_axis,

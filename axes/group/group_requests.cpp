@@ -112,7 +112,7 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
         run_.clear();
         hold_ = members_.set_positions();
     } else {
-        run_.stop(command.dynamics, view_.override_factors);
+        run_.stop(command.dynamics, factors());
     }
     const auto id = queue_.next_id();
     queue_.activate({id, owner, command});
@@ -154,7 +154,7 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
     if (queue_.has_active() || queue_.waiting() > 0) {
         if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
         if (on_way) {
-            run_.resume(view_.override_factors);
+            run_.resume(factors());
         } else {
             run_.clear();
             hold_ = members_.set_positions();
@@ -251,7 +251,7 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
     } else if (const auto* factors = std::get_if<Override>(&setting)) {
         if (!usable(*factors)) return ErrorId::invalid_override;
         view_.override_factors = *factors;
-        run_.override_with(*factors);
+        run_.override_with(this->factors());
     } else if (const auto* written = std::get_if<WriteDynamics>(&setting)) {
         if (error = check_dynamics(written->dynamics); error != ErrorId::none) return error;
         auto& kept = written->which == WriteDynamics::Which::default_dynamics ? view_.default_dynamics : view_.reference_dynamics;

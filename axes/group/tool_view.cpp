@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "axes/group/group_arm.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "axes/pose_math.hpp"
 
@@ -33,6 +34,8 @@ std::array<double, 6> velocity_of(const Kinematics& arm, const JointVector& at, 
 }
 
 }  // namespace
+
+std::array<bool, 6> commands_of(const Kinematics& arm) noexcept { return arm.commands(); }
 
 void see_tool(GroupView& view, const Kinematics* arm) noexcept {
     view.tool_known = false;

@@ -242,6 +242,7 @@ Table<GroupEntry> group_table() {
 
 axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std::map<std::string, std::string, std::less<>>& units) {
     auto group = entry.group;
+    group.unit = entry.unit;
     if (!entry.arm || !entry.arm->arm) return group;
     const std::string here = "groups." + group.name + ".kinematics";
     const auto& written = *entry.arm;
