@@ -39,11 +39,18 @@ enum class CommandKind : std::int32_t {
     reset_statistics,
     measure,
     set_value,
+    group_halt,
+    group_interrupt,
+    group_continue,
+    group_override,
+    group_reset,
+    group_enable,
+    group_disable,
 };
 
 /// What a command acts on. `_or_all`: also "all". point: an input or an output, as its request says. variable: of a
-/// program, one that people may write.
-enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output, input, point, variable };
+/// program, one that people may write. group: of axes.
+enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output, input, point, variable, group };
 
 struct CommandWord {
     CommandKind kind;
@@ -54,7 +61,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 25> command_words{{
+inline constexpr std::array<CommandWord, 32> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -93,6 +100,20 @@ inline constexpr std::array<CommandWord, 25> command_words{{
      "measure while held: press once with what, renew each 50 ms; stop lets go"},
     {CommandKind::set_value, "set_value", runtime::OperatorAction::set_value, TargetKind::variable, "value", "",
      "of a program that declares it for people; a button: press once, renew each 50 ms, value 0 lets go"},
+    {CommandKind::group_halt, "group_halt", runtime::OperatorAction::group_halt, TargetKind::group, "", "",
+     "stop its axes, on the path while it moves; anybody may"},
+    {CommandKind::group_interrupt, "group_interrupt", runtime::OperatorAction::group_interrupt, TargetKind::group, "", "",
+     "come to rest on the path and keep the commands"},
+    {CommandKind::group_continue, "group_continue", runtime::OperatorAction::group_continue, TargetKind::group, "", "",
+     "go on where group_interrupt has brought it to rest"},
+    {CommandKind::group_override, "group_override", runtime::OperatorAction::group_override, TargetKind::group, "value", "",
+     "0 to 1, the operator's factor on the velocity along the path; 0 halts"},
+    {CommandKind::group_reset, "group_reset", runtime::OperatorAction::group_reset, TargetKind::group, "", "",
+     "its axes leave ErrorStop, then it leaves GroupErrorStop"},
+    {CommandKind::group_enable, "group_enable", runtime::OperatorAction::group_enable, TargetKind::group, "", "",
+     "it takes commands; its axes need power"},
+    {CommandKind::group_disable, "group_disable", runtime::OperatorAction::group_disable, TargetKind::group, "", "",
+     "stop on the path, then take no commands"},
 }};
 
 namespace command_word_check {
@@ -100,7 +121,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::set_value) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::group_disable) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

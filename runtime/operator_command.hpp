@@ -65,7 +65,22 @@ enum class OperatorAction : std::uint8_t {
                 ///< while another client holds it; not_possible_now while its program does not run]. A press and a switch put on
                 ///< [interlocked while the emergency stop holds]; a press given before a stop of one of its program's axes is stale
     release_values,  ///< buttons that this client holds: it is gone
+    // --- groups of axes: index = group
+    group_halt,  ///< each member as `stop`: while the group moves, along its path; always allowed. People's come as levels of the members
+    group_interrupt,  ///< comes to rest on the path and keeps its commands, whoever moves it [refused_by_axis: group_disabled, in_error_stop,
+                      ///< state_forbids while it is interrupted already]
+    group_continue,  ///< goes on behind a group_interrupt; not behind what a program has interrupted (nothing_interrupted)
+    ///< [not_possible_now (interlocked) while the emergency stop holds; not_at_interruption; stale when given before a stop of
+    ///< a member]
+    group_override,  ///< value = 0 to 1, whoever moves it; stays until it is changed. The smallest of it and its members' acts [bad_value]
+    group_reset,     ///< members in ErrorStop are reset, then the group leaves GroupErrorStop
+    group_enable,    ///< GroupDisabled -> GroupStandby [no_control while another party has a member]
+    group_disable,   ///< comes to rest on the path first [no_control likewise]
 };
+
+[[nodiscard]] constexpr bool is_of_a_group(OperatorAction action) noexcept {
+    return action >= OperatorAction::group_halt && action <= OperatorAction::group_disable;
+}
 
 /// One command. Trivially copyable: goes through a ring.
 struct OperatorCommand {

@@ -21,6 +21,7 @@
 #include "runtime/machine_config.hpp"
 #include "runtime/measure_state.hpp"
 #include "runtime/passed_alarms.hpp"
+#include "runtime/seen_group.hpp"
 
 namespace taktwerk::runtime {
 
@@ -93,6 +94,7 @@ struct Snapshot {
     std::vector<ecat::SlaveHealth> slaves;
     std::vector<axes::AxisView> axes;
     std::vector<FollowingPeak> following_peaks;  ///< one per axis
+    std::vector<SeenGroup> groups;               ///< of axes, in the order of the configuration
     std::vector<std::int64_t> inputs, outputs;   ///< one per I/O point, in configuration order of that direction: raw words
     std::vector<PointValue> input_values;        ///< the same in their units
     std::vector<double> output_values;
@@ -149,6 +151,13 @@ struct MachineLayout {
         double modulo = 0;  ///< 0 = a linear axis
         axes::HomingKind homing = axes::HomingKind::none;
     };
+    /// Axes that move together.
+    struct GroupInfo {
+        std::string name, unit;              ///< unit: of the tool's place, of paths
+        std::vector<std::uint16_t> members;  ///< axes as configured, by place; a program may change them
+        bool arm = false;                    ///< has kinematics: its tool has a place in the machine
+        std::array<bool, 6> commands{};      ///< which of X Y Z RX RY RZ the arm commands
+    };
     struct Block {
         std::string name;  ///< program.block
         const std::byte* begin = nullptr;
@@ -162,6 +171,7 @@ struct MachineLayout {
     std::vector<std::string> serial_devices;  ///< of the serial lines that are not simulated
     Duration cycle{};
     std::vector<AxisInfo> axes;
+    std::vector<GroupInfo> groups;
     std::vector<Block> blocks;
     std::vector<std::string> slaves, inputs, outputs, programs, tasks;
     std::vector<std::string> input_units, output_units;  ///< one per point; empty: the number itself

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/machine/monitor_groups.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/terminal_text.hpp"
 #include "hmi_bridge/socket/json_number.hpp"
@@ -30,7 +31,7 @@ public:
         const auto work = programs();
         const auto told = events();
         for (const bool details : {true, false}) {
-            const auto table = axes(details);
+            const auto table = joined({axes(details), monitor_groups(state_, size_, details)});
             Lines out;
             for (const std::size_t causes : {every, std::size_t{1}}) {  // the newest alarm keeps its cause longest
                 out = joined({head, table, alarms(every, causes), told, work, points});

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/machine/group.hpp"
 #include "apps/machine/held_velocity.hpp"
 #include "apps/machine/jog.hpp"
 #include "apps/machine/remote.hpp"
@@ -296,6 +297,7 @@ struct Adder {
 
 void add_operate(CLI::App& app, Action& action) {
     add_jog(app, action);
+    add_group(app, action);
 
     Adder adder{app, action, nullptr};
     const auto axis_command = [&](const char* word, const char* doc, Body body, const char* target, bool required,

@@ -16,8 +16,10 @@ constexpr Quantity quantities[] = {{"set_position", ""},    {"set_velocity", "/s
                                    {"set_jerk", "/s3"},     {"actual_position", ""}, {"actual_velocity", "/s"},
                                    {"following_error", ""}, {"target_position", ""}};
 
-/// "[mm/s]" for the columns of an axis that have its unit, empty for others.
-std::string unit_of(std::string_view column, const runtime::MachineLayout& layout) {
+/// "[mm/s]" for the columns of an axis that have its unit and for those of a group, empty for others.
+std::string unit_of(const runtime::RecordedSignal& signal, const runtime::MachineLayout& layout) {
+    const std::string_view column = signal.name;
+    if (signal.group == runtime::SignalGroup::group && !signal.unit.empty()) return "[" + signal.unit + "]";
     for (const auto& axis : layout.axes)
         for (const auto& quantity : quantities)
             if (column == fmt::format("{}.{}", axis.name, quantity.column)) return fmt::format("[{}{}]", axis.unit, quantity.per);
@@ -41,7 +43,7 @@ Result<std::unique_ptr<TraceCsv>> TraceCsv::create(const std::string& path, runt
     auto trace = std::unique_ptr<TraceCsv>(new TraceCsv(path, file, ring));
     std::string header;
     for (const auto& signal : ring.signals())
-        if (signal.in_trace) header += (header.empty() ? "" : ",") + signal.name + unit_of(signal.name, layout);
+        if (signal.in_trace) header += (header.empty() ? "" : ",") + signal.name + unit_of(signal, layout);
     header += '\n';
     std::fwrite(header.data(), 1, header.size(), file);
     return trace;

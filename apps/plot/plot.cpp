@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "apps/plot/gnuplot.hpp"
+#include "apps/plot/path_picture.hpp"
 #include "apps/plot/plot_script.hpp"
 #include "apps/plot/recording_csv.hpp"
 #include "apps/taktwerk.hpp"
@@ -20,7 +21,7 @@ namespace taktwerk::apps {
 namespace {
 
 struct PlotOptions {
-    std::string file, output, title, csv;
+    std::string file, output, title, csv, path;
     std::vector<std::string> axes, bits, values;
     double from_s = 0, to_s = 0;
     bool following_error = false;
@@ -66,7 +67,9 @@ int plot(const PlotOptions& options) {
     std::error_code ignored;
     if (std::filesystem::equivalent(request.output, file, ignored))
         return fail({"plot.output", request.output, "the picture would overwrite the trace", "Choose another place with -o."});
-    const auto script = plot_script(*trace, request);
+    const auto script = options.path.empty()
+                            ? plot_script(*trace, request)
+                            : path_script(*trace, {request.title, request.output, options.path, request.from_s, request.to_s});
     if (!script) {
         print_error(script.error());
         return exit_usage;
@@ -100,6 +103,8 @@ void add_plot(CLI::App& app, Action& action) {
     sub->add_option("--values", options->values,
                     "a panel for each of these numbers (analog points, variables of programs), e.g. --values feeder.pressure,in.level")
         ->delimiter(',');
+    sub->add_option("--path", options->path,
+                    "instead of the axes: the way of this group's tool in XY and XZ, its speed, and what each axis uses of its limits");
     sub->add_option("--title", options->title, "headline; default: the trace's name");
     sub->add_flag("--following-error", options->following_error, "a panel more for each axis");
     sub->callback([&action, options] { action = [options] { return plot(*options); }; });

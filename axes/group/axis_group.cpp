@@ -80,7 +80,31 @@ void AxisGroup::update(Instant) noexcept {
         else if (loss.any) fail(static_cast<std::uint16_t>(ErrorId::member_left));
     }
     if (view_.resetting) watch_reset();
+    take_operators_override();
     publish();
+}
+
+Override AxisGroup::factors() const noexcept {
+    auto factors = view_.override_factors;
+    factors.velocity *= view_.operators_override;
+    return factors;
+}
+
+/// Whoever slows one of its axes down slows the path down: else that axis would leave it, or nothing would happen at all.
+void AxisGroup::take_operators_override() noexcept {
+    double least = operators_override_;
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (members_.has(i)) least = std::min(least, members_.axis(i).view().operators_override);
+    if (least == view_.operators_override) return;
+    view_.operators_override = least;
+    run_.override_with(factors());
+}
+
+ErrorId AxisGroup::set_operators_override(double factor) noexcept {
+    if (!(factor >= 0 && factor <= 1)) return ErrorId::invalid_override;
+    operators_override_ = factor;
+    take_operators_override();
+    return ErrorId::none;
 }
 
 void AxisGroup::watch_reset() noexcept {
@@ -166,8 +190,7 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
             if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none)
                 return error;
         if (way && goes_nowhere(command, hold_, members_)) return ErrorId::none;
-        if (!(way ? run_.restart(members_, view_.override_factors)
-                  : run_.restart(members_, jog_.factors(view_.override_factors), &view_.jogging_dynamics)))
+        if (!(way ? run_.restart(members_, factors()) : run_.restart(members_, jog_.factors(factors()), &view_.jogging_dynamics)))
             return std::nullopt;
         sent_ = 0;
     }

@@ -51,6 +51,8 @@ public:
     void let_go() noexcept;
     /// For a member that it leads: halts on the path, and shuts that axis down when it stands (Axis::shut_down).
     void shut_down(AxisRef axis) noexcept;
+    /// A person's factor on the velocity along the path, 0 to 1, beside MC_GroupSetOverride; stays until it is changed. Errors: invalid_override.
+    ErrorId set_operators_override(double factor) noexcept;
 
     // --- requests (GroupAccess, for one group) ----------------------------------------------------------------------------
     Submitted submit(const GroupCommand& command, Owner owner) noexcept;
@@ -72,6 +74,8 @@ private:
     ErrorId equip(const GroupSetting& setting) noexcept;
     ErrorId set_position(const GroupCommand& command, Owner owner) noexcept;
     [[nodiscard]] JointVector here() const noexcept;
+    [[nodiscard]] Override factors() const noexcept;
+    void take_operators_override() noexcept;
     [[nodiscard]] ErrorId refuse(const GroupCommand& command, Owner owner) const noexcept;
     [[nodiscard]] ErrorId refuse_state(const GroupCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_way(const GroupCommand& command) const noexcept;
@@ -124,6 +128,7 @@ private:
     bool begun_ = false;           // the active command has begun
     bool interrupted_ = false;     // it stands, and what was under way may go on
     std::uint16_t going_off_ = 0;  // places that are shut down when it stands
+    double operators_override_ = 1;
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
     CommandId sent_ = 0;  // the last one that the planner has
     Duration elapsed_{};  // of the active command

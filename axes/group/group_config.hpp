@@ -21,6 +21,7 @@ struct AxisGroupConfig {
     GroupEquipment equipment{};                      ///< frames, tools, payloads at the beginning; its `arm` is filled by the group
     double millimetre = 1;                           ///< in the unit of its paths: what stored paths are written in
     PathDynamics default_dynamics{};                 ///< 0 = what the axes' limits leave on a path
+    std::string unit = "mm";                         ///< u of lengths and paths, for people
 };
 
 /// Every problem; `axes`: the names of the machine's axes. Codes: group.no_name, group.name_twice, group.too_many_members, group.unknown_axis,

@@ -66,6 +66,7 @@ public:
     void publish(GroupView& view) const noexcept {
         view.active = active_.id;
         view.active_kind = active_.command.kind;
+        view.block = active_.command.instance;
         view.queued_count = static_cast<std::uint8_t>(waiting_);
         for (std::size_t i = 0; i < capacity; ++i) view.queued[i] = i < waiting_ ? ring_[(first_ + i) % capacity].id : 0;
         view.ledger = ledger_;

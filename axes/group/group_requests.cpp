@@ -147,7 +147,7 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
     } else {
         const auto& jogging = view_.jogging_dynamics.path;
         const bool jog = command.kind == GroupCommandKind::jog;
-        run_.stop(jog ? PathDynamics{0, 0, jogging.deceleration, jogging.jerk} : command.dynamics, view_.override_factors);
+        run_.stop(jog ? PathDynamics{0, 0, jogging.deceleration, jogging.jerk} : command.dynamics, factors());
     }
     if (command.kind == GroupCommandKind::jog) jog_.press(command, jog_lease_of(members_));
     const auto id = queue_.next_id();
@@ -194,7 +194,7 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
     if (queue_.has_active() || queue_.waiting() > 0) {
         if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
         if (on_way) {
-            run_.resume(view_.override_factors);
+            run_.resume(factors());
         } else {
             run_.clear();
             hold_ = members_.set_positions();
@@ -280,9 +280,9 @@ void AxisGroup::tend_jog(Duration period) noexcept {
     if (!jogs()) return;
     jog_.pass(period);
     if (!run_.exists() || run_.stops()) return;
-    const auto factors = jog_.factors(view_.override_factors);
-    if (begun_ && jog_.stops()) run_.release(factors);
-    else run_.override_with(factors);
+    const auto now = jog_.factors(factors());
+    if (begun_ && jog_.stops()) run_.release(now);
+    else run_.override_with(now);
 }
 
 ErrorId AxisGroup::set_jog(const GroupSetting& setting) noexcept {
@@ -328,7 +328,7 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
     } else if (const auto* factors = std::get_if<Override>(&setting)) {
         if (!usable(*factors)) return ErrorId::invalid_override;
         view_.override_factors = *factors;
-        run_.override_with(*factors);
+        run_.override_with(this->factors());
     } else if (const auto* written = std::get_if<WriteDynamics>(&setting)) {
         if (error = check_dynamics(written->dynamics); error != ErrorId::none) return error;
         auto& kept = written->which == WriteDynamics::Which::default_dynamics ? view_.default_dynamics : view_.reference_dynamics;

@@ -45,8 +45,9 @@ struct GroupView {
     // of the active command
     GroupCommandKind active_kind = GroupCommandKind::none;
     CommandId active = 0;
-    Duration elapsed{};    ///< since it became active
-    Duration remaining{};  ///< as planned now; 0 where nobody can say
+    const void* block = nullptr;  ///< that gave it, to be named to people; never followed
+    Duration elapsed{};           ///< since it became active
+    Duration remaining{};         ///< as planned now; 0 where nobody can say
     double remaining_distance = 0, progress = 0;
 
     PathView path{};
@@ -65,6 +66,7 @@ struct GroupView {
     CommandId last_id = 0;
 
     Override override_factors;
+    double operators_override = 1;  ///< 0 to 1, beside it, whoever moves the group: the smallest of its own and its members'
     PathDynamics default_dynamics, reference_dynamics;
     JoggingDynamics jogging_dynamics;
 

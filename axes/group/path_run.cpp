@@ -18,7 +18,9 @@ constexpr std::size_t sections_of_stored_paths = 4096;
 /// A part of a limit that counts as using it.
 constexpr double in_use = 0.98;
 
-MemberLimits limits_of(const Axis& axis) noexcept {
+}  // namespace
+
+MemberLimits path_limits_of(const Axis& axis) noexcept {
     const auto& limits = axis.config().limits;
     MemberLimits m;
     // A path turns: what holds in one direction only is kept in both.
@@ -33,6 +35,8 @@ MemberLimits limits_of(const Axis& axis) noexcept {
     m.high = hold ? limits.position_max : std::numeric_limits<double>::infinity();
     return m;
 }
+
+namespace {
 
 void cap(MemberLimits& m, const JoggingDynamics& caps, std::size_t place) noexcept {
     const auto lower = [](double& limit, double most) {
@@ -68,7 +72,8 @@ struct PathRun::Inside {
     std::array<std::uint8_t, max_path_axes> places{};
     std::array<MemberLimits, max_path_axes> limits{};
     std::size_t members = 0;
-    MemberVector q{}, velocity{}, acceleration{};
+    MemberVector q{}, velocity{}, acceleration{}, before{};  // before: the acceleration of the cycle before
+    double period = 1;
     WayPoint at;
     PathNote note;
     bool noted = false;
@@ -104,7 +109,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
         states_[i] = {};
         if (!members.has(i) || count == max_path_axes) continue;
         order.from[count] = members.axis(i).view().set_position;
-        order.limits[count] = limits_of(members.axis(i));
+        order.limits[count] = path_limits_of(members.axis(i));
         if (caps != nullptr) cap(order.limits[count], *caps, i);
         states_[i] = {order.from[count], 0, 0};
         end_[i] = order.from[count];
@@ -266,6 +271,8 @@ void PathRun::advance(Duration period) noexcept {
     if (!exists_ || !in.player || fault_ != ErrorId::none) return;
     const PathMotion& now = in.player->step(to_seconds(period));
     s_ = {now.s, now.velocity, now.acceleration};
+    in.period = to_seconds(period);
+    in.before = in.acceleration;
     look();
 }
 
@@ -320,7 +327,9 @@ void PathRun::see_limits() noexcept {
     double most = 0;
     for (std::size_t k = 0; k < in.members; ++k) {
         const auto& limits = in.limits[k];
-        const double use = std::max(std::abs(in.velocity[k]) / limits.velocity, std::abs(in.acceleration[k]) / limits.acceleration);
+        const double jerk = (in.acceleration[k] - in.before[k]) / in.period;
+        const double use = std::max(
+            {std::abs(in.velocity[k]) / limits.velocity, std::abs(in.acceleration[k]) / limits.acceleration, std::abs(jerk) / limits.jerk});
         if (use <= most) continue;
         most = use;
         narrowest_ = in.places[k];

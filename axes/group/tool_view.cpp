@@ -1,5 +1,6 @@
 #include "axes/group/tool_view.hpp"
 
+#include "axes/group/group_arm.hpp"
 #include "axes/group/written_pose.hpp"
 #include "axes/kinematics/kinematics.hpp"
 
@@ -20,6 +21,8 @@ std::array<double, 6> velocity_of(const Kinematics& arm, const Pose& tool, const
 }
 
 }  // namespace
+
+std::array<bool, 6> commands_of(const Kinematics& arm) noexcept { return arm.commands(); }
 
 void see_tool(GroupView& view, const Kinematics* arm, const Pose& tool) noexcept {
     view.tool_known = false;

@@ -233,6 +233,7 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
     auto group = entry.group;
     if (const auto mm = parse_quantity("1 mm", Dimension::position, entry.unit); mm.problem == QuantityProblem::none)
         group.millimetre = mm.value;
+    group.unit = entry.unit;
     if (!entry.arm || !entry.arm->arm) return group;
     const std::string here = "groups." + group.name + ".kinematics";
     const auto& written = *entry.arm;

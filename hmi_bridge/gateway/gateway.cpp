@@ -91,6 +91,7 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
             return std::nullopt;
         }
         case CommandKind::override_velocity:
+        case CommandKind::group_override:
             if (request.value < 0 || request.value > 1)
                 return bad_value(fmt::format("{:g} is no part of a velocity", request.value), "Give 0 (halt) to 1 (as commanded).");
             return std::nullopt;
@@ -291,6 +292,13 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
         note(request.client, client, request, now);
         return raise(client, request, *target, now);
     }
+    if (request.kind == CommandKind::group_halt) {
+        const auto target = find_target(machine_.layout(), TargetKind::group, request.target);
+        if (!target) return refuse(Answer::unknown_name, target.error().what, target.error().remedy);
+        client.highest = std::max(client.highest, request.sequence);
+        note(request.client, client, request, now);
+        return raise_of_group(client, request, *target, now);
+    }
     if (lets_go(request)) let_go(request);  // done, whatever the answer will be
     if (request.sequence == 0) return refuse(Answer::bad_value, "the sequence number is 0", "Count from 1.");
     Entry* entry = client.find(request.sequence);
@@ -347,8 +355,21 @@ void Gateway::let_go(const CommandRequest& request) {
     jogs_.erase(jog);
 }
 
+// A level for each of its axes, as they are configured. The cycle takes them by their number: when the first axis' has been taken, which was raised
+// last, all have.
+void Gateway::raise_of_group(const Client& client, const CommandRequest& request, std::uint16_t group, Instant now) {
+    auto members = machine_.layout().groups[group].members;
+    std::sort(members.rbegin(), members.rend());
+    runtime::StopLevels::Ticket last;
+    for (const auto member : members) last = machine_.request_stop(member);
+    wait_for(client, request, last, now);
+}
+
 void Gateway::raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now) {
-    const auto ticket = request.kind == CommandKind::stop ? machine_.request_stop(axis) : machine_.request_shutdown();
+    wait_for(client, request, request.kind == CommandKind::stop ? machine_.request_stop(axis) : machine_.request_shutdown(), now);
+}
+
+void Gateway::wait_for(const Client& client, const CommandRequest& request, runtime::StopLevels::Ticket ticket, Instant now) {
     if (levels_.size() >= most_levels) {  // the level stands; only who asks without end is told so before the cycle has said it
         replies_.push_back({request.client, client.source, request.sequence, request.kind, Answer::accepted, axes::ErrorId::none, {}});
         return;

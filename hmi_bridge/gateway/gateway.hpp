@@ -147,6 +147,8 @@ private:
     void note_end(ClientId id, const Client& client);
     void send_endings();
     void raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now);
+    void raise_of_group(const Client& client, const CommandRequest& request, std::uint16_t group, Instant now);
+    void wait_for(const Client& client, const CommandRequest& request, runtime::StopLevels::Ticket ticket, Instant now);
     void settle_levels(Instant now);
     void let_go(const CommandRequest& request);
 

@@ -41,7 +41,8 @@ std::string Gateway::deed(const CommandRequest& request) const {
         text += fmt::format(" to {:g} {} at {:g} {}/s", request.value, layout.axes[*axis].unit, request.value2, layout.axes[*axis].unit);
     if (request.kind == CommandKind::measure) text += fmt::format(": {}", name(request.measure.kind));
     if (request.kind == CommandKind::mode) text += fmt::format(" {}", hmi::word(request.mode));
-    if (request.kind == CommandKind::override_velocity) text += fmt::format(" {:g} %", 100 * request.value);
+    if (request.kind == CommandKind::override_velocity || request.kind == CommandKind::group_override)
+        text += fmt::format(" {:g} %", 100 * request.value);
     if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output || request.kind == CommandKind::force ||
         request.kind == CommandKind::set_value)
         text += fmt::format(" = {:g}", request.value);

@@ -56,6 +56,13 @@ std::string layout_json(const runtime::MachineLayout& layout) {
                             {"drive", axis.drive},
                             {"profile", axis.profile},
                             {"drive_axis", axis.drive_axis + 1}});
+    auto& groups = out["groups"] = Json::array();
+    for (const auto& group : layout.groups) {
+        Json members = Json::array();
+        for (const auto member : group.members) members.push_back(layout.axes[member].name);
+        groups.push_back(Json{
+            {"name", group.name}, {"unit", group.unit}, {"members", std::move(members)}, {"arm", group.arm}, {"commands", group.commands}});
+    }
     out["slaves"] = layout.slaves;
     out["inputs"] = layout.inputs;
     out["outputs"] = layout.outputs;

@@ -97,6 +97,71 @@ void put(JsonWriter& json, const whole_axis_v1_t& axis) {
     json.close('}');
 }
 
+void put(JsonWriter& json, const whole_group_member_v1_t& member) {
+    json.open('{');
+    json.field("axis", member.axis);
+    json.field("ident", member.ident);
+    json.field("unit", member.unit);
+    json.field("set_position", member.set_position);
+    json.field("actual_position", member.actual_position);
+    json.field("set_velocity", member.set_velocity);
+    json.field("velocity_use", member.velocity_use);
+    json.field("acceleration_use", member.acceleration_use);
+    json.field("jerk_use", member.jerk_use);
+    json.close('}');
+}
+
+/// X Y Z RX RY RZ.
+template <std::size_t Count>
+void put_numbers(JsonWriter& json, std::string_view key, const double (&numbers)[Count]) {
+    json.open(key, '[');
+    for (const double number : numbers) json.value(number);
+    json.close(']');
+}
+
+template <class Part>
+void put_list(JsonWriter& json, std::string_view key, const std::vector<Part>& parts);
+
+void put(JsonWriter& json, const whole_group_v1_t& group) {
+    json.open('{');
+    json.field("name", group.name);
+    json.field("unit", group.unit);
+    json.field("state", group.state);
+    json.field("interrupted", group.interrupted != 0);
+    json.field("held", group.held != 0);
+    json.field("resetting", group.resetting != 0);
+    json.field("powered", group.powered != 0);
+    json.field("online", group.online != 0);
+    json.field("in_position", group.in_position != 0);
+    json.field("error", group.error);
+    if (!group.error_name.empty()) {
+        json.field("error_name", group.error_name);
+        json.field("error_text", group.error_text);
+        json.field("error_cause", group.error_cause);
+        json.field("error_remedy", group.error_remedy);
+    }
+    put_list(json, "members", group.members);
+    json.field("tool_known", group.tool_known != 0);
+    put_numbers(json, "tool_set", group.tool_set);
+    put_numbers(json, "tool_actual", group.tool_actual);
+    json.field("tool_speed", group.tool_speed);
+    json.field("tool_actual_speed", group.tool_actual_speed);
+    json.field("path_velocity", group.path_velocity);
+    json.field("path_acceleration", group.path_acceleration);
+    json.field("limiter", group.limiter);
+    json.field("limiting_axis", group.limiting_axis);
+    json.field("command", group.command);
+    json.field("block", group.block);
+    json.field("command_id", group.command_id);
+    json.field("progress", group.progress);
+    json.field("distance_to_go", group.distance_to_go);
+    json.field("remaining_s", group.remaining_s);
+    json.field("queued", group.queued);
+    json.field("override", group.override_velocity);
+    json.field("operators_override", group.operators_override);
+    json.close('}');
+}
+
 void put(JsonWriter& json, const whole_alarm_v1_t& alarm) {
     json.open('{');
     json.field("id", alarm.id);
@@ -297,9 +362,9 @@ std::string alarms_text(const runtime::Snapshot& snapshot, const MachineLink& ma
 
 }  // namespace
 
-std::string state_json(const whole_state_v2_t& s) {
-    constexpr std::size_t of_an_axis = 2048, of_a_value = 96, of_the_rest = 8192;
-    JsonWriter json(of_the_rest + s.axes.size() * of_an_axis +
+std::string state_json(const whole_state_v3_t& s) {
+    constexpr std::size_t of_an_axis = 2048, of_a_group = 4096, of_a_value = 96, of_the_rest = 8192;
+    JsonWriter json(of_the_rest + s.axes.size() * of_an_axis + s.groups.size() * of_a_group +
                     (s.inputs.size() + s.outputs.size() + s.variables.size() + s.parameters.size() + s.slaves.size()) * of_a_value);
     json.open('{');
     json.field("machine", s.machine);
@@ -315,6 +380,7 @@ std::string state_json(const whole_state_v2_t& s) {
     put(json, s.bus);
     put_list(json, "slaves", s.slaves);
     put_list(json, "axes", s.axes);
+    put_list(json, "groups", s.groups);
     put_list(json, "programs", s.programs);
     put_list(json, "tasks", s.tasks);
     put_units(json, "input_units", s.inputs);
@@ -334,7 +400,7 @@ std::string state_json(const whole_state_v2_t& s) {
 }
 
 std::string state_json(const runtime::Snapshot& snapshot, const MachineLink& machine, const NameOfClient& who) {
-    whole_state_v2_t all{};
+    whole_state_v3_t all{};
     fill(all, snapshot, machine, who);
     return state_json(all);
 }

@@ -35,7 +35,7 @@ std::string_view word(runtime::SignalKind kind) {
     return words[static_cast<std::size_t>(kind)];
 }
 std::string_view word(runtime::SignalGroup group) {
-    constexpr std::array<std::string_view, 7> words{"axis", "input", "output", "variable", "machine", "bus", "task"};
+    constexpr std::array<std::string_view, 8> words{"axis", "input", "output", "variable", "machine", "bus", "task", "group"};
     return words[static_cast<std::size_t>(group)];
 }
 

@@ -24,7 +24,7 @@ const CommandRule* find_rule(std::string_view command) {
 }
 
 bool only_asks(const CommandRule& rule) {
-    constexpr std::array<std::string_view, 4> of_a_connection{"stop", "scope_arm", "scope_state", "scope_disarm"};
+    constexpr std::array<std::string_view, 5> of_a_connection{"stop", "group_halt", "scope_arm", "scope_state", "scope_disarm"};
     return !rule.moves && std::find(of_a_connection.begin(), of_a_connection.end(), rule.command) == of_a_connection.end();
 }
 

@@ -53,6 +53,13 @@ inline constexpr std::array command_rules{
     CommandRule{"drive_write", Role::engineer, true},
     CommandRule{"drive_store", Role::engineer, true},
     CommandRule{"override", Role::operates, true},
+    CommandRule{"group_halt", Role::viewer, false},  // anybody may, always
+    CommandRule{"group_interrupt", Role::operates, true},
+    CommandRule{"group_continue", Role::operates, true},
+    CommandRule{"group_override", Role::operates, true},
+    CommandRule{"group_reset", Role::operates, true},
+    CommandRule{"group_enable", Role::operates, true},
+    CommandRule{"group_disable", Role::operates, true},
     CommandRule{"reset_peaks", Role::operates, true},
     CommandRule{"force", Role::engineer, true},
     CommandRule{"unforce", Role::engineer, true},

@@ -47,7 +47,32 @@ constexpr OperatorWords operator_words[] = {
     {axes::ErrorId::queue_full, "too many commands wait for it", "Wait until {} stands, then give it again."},
 };
 
-const OperatorWords* words_for_operator(axes::ErrorId error) {
+/// The same of a group of axes.
+constexpr OperatorWords group_words[] = {
+    {axes::ErrorId::group_disabled, "it takes no commands before it is enabled", "Enable it: `taktwerk group enable {}`."},
+    {axes::ErrorId::in_error_stop, "an error of an axis or of the path stopped it",
+     "See why (`taktwerk monitor`), remove the cause, then `taktwerk group reset {}`."},
+    {axes::ErrorId::nothing_interrupted,
+     "nobody has interrupted it from a panel; what a program has interrupted, it goes on with by itself",
+     "Look with `taktwerk monitor` what {} does."},
+    {axes::ErrorId::not_at_interruption, "its axes were moved since", "Move the axes of {} back to where it stood, or stop its program."},
+    {axes::ErrorId::not_powered, "an axis of it has no power", "Enable its axes; `taktwerk monitor` shows with {} which they are."},
+    {axes::ErrorId::no_members, "it has no axes", "Its program, or `members` of {} in the file, gives it some."},
+    {axes::ErrorId::state_forbids, "it is stopping, or interrupted already",
+     "Wait until it stands; `taktwerk monitor` shows what {} does."},
+};
+
+bool is_of_a_group(CommandKind kind) noexcept {
+    const auto* word = find_command(kind);
+    return word != nullptr && word->target == TargetKind::group;
+}
+
+const OperatorWords* words_for_operator(axes::ErrorId error, CommandKind kind) {
+    if (is_of_a_group(kind)) {
+        for (const auto& words : group_words)
+            if (words.error == error) return &words;
+        return nullptr;
+    }
     for (const auto& words : operator_words)
         if (words.error == error) return &words;
     return nullptr;
@@ -86,6 +111,7 @@ std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, 
         case TargetKind::variable:
             return index < layout.variables.size() ? "variable " + layout.variables[index].program + "." + layout.variables[index].name
                                                    : "";
+        case TargetKind::group: return index < layout.groups.size() ? "group " + layout.groups[index].name : "";
     }
     return "";
 }
@@ -138,7 +164,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             }
             error.what = fmt::format("{} has control", spoken(answer.owner));
             if (!holder.empty()) error.what += fmt::format("; its block '{}' moves or holds the axis", holder);
-            error.remedy = answer.owner == axes::Owner::program
+            error.remedy = is_of_a_group(kind) && answer.owner == axes::Owner::program
+                               ? "Stop the program or change to manual mode; or take control of its axes (they stop first)."
+                           : answer.owner == axes::Owner::program
                                ? "Stop the program or change to manual mode; or take control (the axis stops first)."
                                : "Wait until it is released, or take control (the axis stops first).";
             break;
@@ -152,8 +180,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                 error.what = "the emergency stop is pressed, or its circuit is open";
                 error.remedy = kind == CommandKind::reset ? "Release it when nobody is in danger, then reset."
                                                           : "Release it when nobody is in danger, reset, then give the command again.";
-            } else if (const auto* words = words_for_operator(answer.error)) {
-                const auto axis = error.subject.rfind("axis ", 0) == 0 ? error.subject.substr(5) : std::string("the axis");
+            } else if (const auto* words = words_for_operator(answer.error, kind)) {
+                const auto blank = error.subject.find(' ');
+                const auto axis = blank == std::string::npos ? std::string("the axis") : error.subject.substr(blank + 1);
                 const auto* text = axes::find_error(answer.error);
                 error.what = fmt::format("{} ({}): {}", text->english.text, text->name, words->cause);
                 error.remedy = fmt::format(fmt::runtime(words->remedy), axis);

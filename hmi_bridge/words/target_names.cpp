@@ -31,6 +31,9 @@ std::vector<std::string> names(const runtime::MachineLayout& layout, TargetKind 
             for (const auto& variable : layout.variables)
                 if (variable.writable) out.push_back(variable.program + "." + variable.name);
             break;
+        case TargetKind::group:
+            for (const auto& group : layout.groups) out.push_back(group.name);
+            break;
     }
     return out;
 }
@@ -69,6 +72,7 @@ std::string_view noun(TargetKind kind) {
         case TargetKind::input: return "input";
         case TargetKind::point: return "point";
         case TargetKind::variable: return "variable";
+        case TargetKind::group: return "group";
     }
     return "";
 }

@@ -38,14 +38,15 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       retain(kept(body, errors)),
       hands(body),
       measuring(body, hands),
+      axis_groups(body, hands),
       programs(body, hands, errors),
-      desk(body, hands, measuring, programs),
+      desk(body, hands, measuring, axis_groups, programs),
       supervisor(body, drives, groups, modbus, programs, desk, retain.get()),
       outcome(body, drives),
       replayed(body, programs, desk, drives.serial(), modbus, supervisor, asked, look),
-      snapshots(body, measuring, programs),
+      snapshots(body, measuring, axis_groups, programs),
       layout(layout_of(body, drives, programs.host())),
-      rows(body, programs, layout),
+      rows(body, axis_groups, programs, layout),
       words(body, drives, groups, modbus, programs, supervisor, layout),
       steps(measured_steps()) {
     restore_values();
@@ -194,6 +195,7 @@ void Machine::Impl::tell(const CycleTick& tick) noexcept {
     programs.read_variables();
     statistics.snapshots_dropped = rows.ring().lost();
     measuring.keep();
+    axis_groups.look();
     snapshots.step();
     rows.step();
     if (!retain) return;

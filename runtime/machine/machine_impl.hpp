@@ -73,6 +73,7 @@ struct Machine::Impl {
     std::unique_ptr<RetainKeeper> retain;  // nullptr: nothing is kept
     HandMotion hands;
     Measuring measuring;
+    GroupDesk axis_groups;
     ProgramRunner programs;
     OperatorDesk desk;
     Supervisor supervisor;

@@ -1,5 +1,7 @@
 #include "runtime/machine/machine_layout.hpp"
 
+#include "axes/group/group_arm.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -32,6 +34,18 @@ MachineLayout::AxisInfo axis_info(const MachineBody& body, const MachineDrives& 
     return info;
 }
 
+MachineLayout::GroupInfo group_info(const MachineBody& body, const axes::AxisGroup& group) {
+    MachineLayout::GroupInfo info;
+    info.name = group.config().name;
+    info.unit = group.config().unit;
+    for (const auto& name : group.config().members)
+        for (std::size_t i = 0; i < body.config.axes.size(); ++i)
+            if (body.config.axes[i].axis.name == name) info.members.push_back(static_cast<std::uint16_t>(i));
+    info.arm = group.config().kinematics != nullptr;
+    if (info.arm) info.commands = axes::commands_of(*group.config().kinematics);
+    return info;
+}
+
 }  // namespace
 
 MachineLayout layout_of(const MachineBody& body, const MachineDrives& drives, const ProgramHost& programs) {
@@ -40,6 +54,7 @@ MachineLayout layout_of(const MachineBody& body, const MachineDrives& drives, co
     layout.machine = config.name;
     layout.cycle = config.cycle;
     for (std::size_t i = 0; i < config.axes.size(); ++i) layout.axes.push_back(axis_info(body, drives, i));
+    for (std::size_t i = 0; i < body.axis_groups.size(); ++i) layout.groups.push_back(group_info(body, body.axis_groups[i]));
     layout.interface = config.bus.interface;
     for (const auto& line : config.serial)
         if (!line.device.empty()) layout.serial_devices.push_back(line.device);

@@ -38,6 +38,13 @@ void OperatorDesk::begin() noexcept {
 Verdict OperatorDesk::execute(const OperatorCommand& command) noexcept {
     const bool a_person = command.owner == Owner::operator_panel || command.owner == Owner::commissioning;
     switch (command.action) {
+        case OperatorAction::group_halt:
+        case OperatorAction::group_interrupt:
+        case OperatorAction::group_continue:
+        case OperatorAction::group_override:
+        case OperatorAction::group_reset:
+        case OperatorAction::group_enable:
+        case OperatorAction::group_disable: return execute_group(command);
         case OperatorAction::none:
         case OperatorAction::set_mode:
         case OperatorAction::program_start:
@@ -108,6 +115,12 @@ Verdict OperatorDesk::execute_machine(const OperatorCommand& command) noexcept {
             return {};
         default: return {Answer::unknown_name};
     }
+}
+
+Verdict OperatorDesk::execute_group(const OperatorCommand& command) noexcept {
+    const bool a_person = command.owner == Owner::operator_panel || command.owner == Owner::commissioning;
+    if (!a_person && command.action != OperatorAction::group_halt) return {Answer::no_control, ErrorId::owned_by_other};
+    return groups_.execute(command);
 }
 
 Verdict OperatorDesk::set_parameter(const OperatorCommand& command) noexcept {
@@ -207,6 +220,12 @@ Verdict OperatorDesk::execute_all(const OperatorCommand& command) noexcept {
             continue;  // none of those that are here
         const auto each = execute_axis(command, i);
         if (first.answer == Answer::accepted) first = each;
+    }
+    if (command.action == OperatorAction::reset) {  // their members are under way now
+        for (std::uint16_t i = 0; i < body_.axis_groups.size(); ++i) {
+            const auto each = verdict_of(body_.axis_groups.reset({i}, command.owner));
+            if (first.answer == Answer::accepted) first = each;
+        }
     }
     return first;
 }

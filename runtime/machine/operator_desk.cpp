@@ -13,10 +13,11 @@ constexpr std::size_t inbox_size = 64;
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, ProgramRunner& programs)
+OperatorDesk::OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, GroupDesk& groups, ProgramRunner& programs)
     : body_(body),
       hands_(hands),
       measuring_(measuring),
+      groups_(groups),
       programs_(programs),
       inbox_(inbox_size),
       answers_(inbox_size * 2),
@@ -66,6 +67,7 @@ bool OperatorDesk::overtaken(const OperatorCommand& command) const noexcept {
         const auto program = programs_.values().program_of(command.index);
         return program >= 0 && command.after < programs_.newest_stop_of(static_cast<std::size_t>(program));
     }
+    if (command.action == OperatorAction::group_continue) return command.after < groups_.newest_stop(command.index);
     const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
                                command.action == OperatorAction::measure || (command.action == OperatorAction::jog && command.value != 0);
     return starts_motion && command.axis < body_.axes.size() && command.after < hands_.newest_stop(command.axis);
@@ -76,7 +78,8 @@ void OperatorDesk::drain_inbox(Instant at) noexcept {
     for (std::uint8_t i = 0; i < body_.config.commands_per_cycle && inbox_.try_pop(command); ++i) {
         if (body_.recorder) record_command(*body_.recorder, at, command);
         // A stop is never too late, and while the run ends everything stops anyway.
-        const bool stops = command.action == OperatorAction::stop || command.action == OperatorAction::shutdown;
+        const bool stops = command.action == OperatorAction::stop || command.action == OperatorAction::shutdown ||
+                           command.action == OperatorAction::group_halt;
         const bool expired = !stops && command.expires != Instant{} && command.expires < at;
         if (expired || overtaken(command)) answer(command, {Answer::stale});
         else if (!stops && body_.shutting_down) answer(command, {Answer::not_possible_now});
@@ -95,6 +98,7 @@ void OperatorDesk::answer(const OperatorCommand& command, Verdict verdict) noexc
         reply.holder = body_.axes[command.axis].view().holder;
         if (verdict.answer == Answer::accepted) tell_limit(command, reply);
     }
+    if (is_of_a_group(command.action) && command.index < body_.axis_groups.size()) reply.owner = groups_.owner_of(command.index);
     if (verdict.answer != Answer::accepted) ++body_.statistics.commands_refused;
     answers_.try_push(reply);  // a full ring means nobody reads: the client's own time-out tells it
 }

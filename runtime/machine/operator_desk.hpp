@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/spsc_ring.hpp"
+#include "runtime/machine/group_desk.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/measuring.hpp"
@@ -20,7 +21,7 @@ namespace taktwerk::runtime {
 
 class OperatorDesk {
 public:
-    OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, ProgramRunner& programs);
+    OperatorDesk(MachineBody& body, HandMotion& hands, Measuring& measuring, GroupDesk& groups, ProgramRunner& programs);
 
     // --- other threads: as Machine has them ----------------------------------------------------------------------------------------
     bool submit(const OperatorCommand& command) noexcept { return inbox_.try_push(command); }
@@ -63,6 +64,7 @@ private:
     Verdict execute_machine(const OperatorCommand& command) noexcept;
     Verdict execute_all(const OperatorCommand& command) noexcept;
     Verdict execute_axis(const OperatorCommand& command, std::size_t axis) noexcept;
+    Verdict execute_group(const OperatorCommand& command) noexcept;
     Verdict execute_program(const OperatorCommand& command) noexcept;
     Verdict start_program(const OperatorCommand& command) noexcept;
     Verdict set_parameter(const OperatorCommand& command) noexcept;
@@ -77,6 +79,7 @@ private:
     MachineBody& body_;
     HandMotion& hands_;
     Measuring& measuring_;
+    GroupDesk& groups_;
     ProgramRunner& programs_;
     SpscRing<OperatorCommand> inbox_;
     SpscRing<CommandAnswer> answers_;

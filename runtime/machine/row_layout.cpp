@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 
 #include "axes/axis/axis_view.hpp"
 #include "axes/axis/command_kinds.hpp"
+#include "axes/group/group_words.hpp"
 
 namespace taktwerk::runtime {
 
@@ -100,6 +102,57 @@ constexpr AxisSignal axis_signals[] = {
     {"queued", Kind::whole, no_unit, field(11, 48, 8), Shown::in_scope, "commands that wait", "排队指令数"},
 };
 
+/// What is recorded of each group of axes; places count from the group's first word. Those of the tool stand first, and only where there is an arm.
+struct GroupSignal {
+    const char* name;
+    Kind kind;
+    const char* unit;  ///< "u": the group's, with what stands behind it
+    SignalCell cell;
+    const char* english;
+    const char* chinese;
+    States (*states)() = nullptr;
+};
+constexpr std::uint16_t tool_words = 14, group_words = 6;
+constexpr GroupSignal tool_signals[] = {
+    {"tool_x", Kind::real, "u", real(0), "set position of the tool, X (MCS)", "工具设定位置 X（MCS）"},
+    {"tool_y", Kind::real, "u", real(1), "set position of the tool, Y (MCS)", "工具设定位置 Y（MCS）"},
+    {"tool_z", Kind::real, "u", real(2), "set position of the tool, Z (MCS)", "工具设定位置 Z（MCS）"},
+    {"tool_rx", Kind::real, "deg", real(3), "set orientation of the tool, RX (MCS)", "工具设定姿态 RX（MCS）"},
+    {"tool_ry", Kind::real, "deg", real(4), "set orientation of the tool, RY (MCS)", "工具设定姿态 RY（MCS）"},
+    {"tool_rz", Kind::real, "deg", real(5), "set orientation of the tool, RZ (MCS)", "工具设定姿态 RZ（MCS）"},
+    {"tool_actual_x", Kind::real, "u", real(6), "actual position of the tool, X (MCS)", "工具实际位置 X（MCS）"},
+    {"tool_actual_y", Kind::real, "u", real(7), "actual position of the tool, Y (MCS)", "工具实际位置 Y（MCS）"},
+    {"tool_actual_z", Kind::real, "u", real(8), "actual position of the tool, Z (MCS)", "工具实际位置 Z（MCS）"},
+    {"tool_actual_rx", Kind::real, "deg", real(9), "actual orientation of the tool, RX (MCS)", "工具实际姿态 RX（MCS）"},
+    {"tool_actual_ry", Kind::real, "deg", real(10), "actual orientation of the tool, RY (MCS)", "工具实际姿态 RY（MCS）"},
+    {"tool_actual_rz", Kind::real, "deg", real(11), "actual orientation of the tool, RZ (MCS)", "工具实际姿态 RZ（MCS）"},
+    {"tool_speed", Kind::real, "u/s", real(12), "set speed of the tool", "工具设定速度"},
+    {"tool_actual_speed", Kind::real, "u/s", real(13), "actual speed of the tool", "工具实际速度"},
+};
+States group_states() { return states_of(axes::GroupState::GroupErrorStop); }
+States path_limiters() { return states_of(axes::PathLimiter::override_factor); }
+States group_commands() { return states_of(axes::GroupCommandKind::disable); }
+constexpr GroupSignal group_signals[] = {
+    {"state", Kind::state, "", field(4, 0, 8), "state of the group", "轴组状态", group_states},
+    {"path_velocity", Kind::real, "u/s", real(0), "velocity along the path", "路径速度"},
+    {"path_acceleration", Kind::real, "u/s2", real(1), "acceleration along the path", "路径加速度"},
+    {"distance_to_go", Kind::real, "u", real(2), "path left of the active command", "当前指令剩余路径"},
+    {"progress", Kind::real, "%", real(3), "part of the active command's path that is done", "当前指令路径完成比例"},
+    {"limiter", Kind::state, "", field(4, 8, 8), "what limits the velocity along the path", "路径速度限制原因", path_limiters},
+    {"command", Kind::state, "", field(4, 32, 8), "command", "指令", group_commands},
+    {"active", Kind::whole, "", field(5, 0, 32), "number of the command in control", "当前指令编号"},
+    {"error", Kind::whole, "", field(5, 32, 16), "error number", "错误号"},
+    {"queued", Kind::whole, "", field(4, 40, 8), "commands that wait", "排队指令数"},
+    {"interrupted", Kind::bit, "", field(4, 48, 1), "interrupted", "已中断"},
+};
+constexpr std::uint16_t limiting_axis_bit = 16;  ///< of word 4: 0 = none, else the axis' number in the machine + 1
+constexpr double parts_of_a_percent = 100;
+
+std::string unit_of(const GroupSignal& signal, const std::string& group) {
+    const std::string_view unit = signal.unit;
+    return unit.starts_with('u') ? group + std::string(unit.substr(1)) : std::string(unit);
+}
+
 }  // namespace
 
 void RowLayout::add_machine() {
@@ -137,6 +190,42 @@ void RowLayout::add_axes(const MachineLayout& layout) {
                                 s.english, s.chinese, cell, s.shown == Shown::in_trace, s.states ? s.states() : States{}});
         }
         words_ += axis_words;
+    }
+}
+
+void RowLayout::add_groups(const MachineLayout& layout) {
+    for (const auto& group : layout.groups) {
+        const auto add = [&](const std::string& name, Kind kind, std::string unit, SignalCell cell, const char* english,
+                             const char* chinese, States states) {
+            cell.word = static_cast<std::uint16_t>(cell.word + words_);
+            signals_.push_back({"group." + group.name + "." + name, std::move(unit), kind, SignalGroup::group, group.name, english, chinese,
+                                cell, true, std::move(states)});
+        };
+        const auto add_all = [&](std::span<const GroupSignal> signals) {
+            for (const auto& s : signals)
+                add(s.name, s.kind, unit_of(s, group.unit), s.cell, s.english, s.chinese, s.states ? s.states() : States{});
+        };
+        if (group.arm) {
+            add_all(tool_signals);
+            words_ += tool_words;
+        }
+        add_all(group_signals);
+        States axes{{0, "none"}};
+        for (std::size_t i = 0; i < layout.axes.size(); ++i) axes.emplace_back(static_cast<int>(i) + 1, layout.axes[i].name);
+        add("limiting_axis", Kind::state, "", field(4, limiting_axis_bit, 16), "axis whose limit holds the path back", "限制路径速度的轴",
+            std::move(axes));
+        words_ += group_words;
+        for (const auto member : group.members) {
+            const auto& axis = layout.axes[member].name;
+            const auto part = [](std::uint8_t first_bit) { return SignalCell{0, first_bit, 16, Coding::natural, parts_of_a_percent}; };
+            add(axis + "_velocity_use", Kind::real, "%", part(0), "part of its velocity limit that the axis uses", "该轴速度限值的使用比例",
+                {});
+            add(axis + "_acceleration_use", Kind::real, "%", part(16), "part of its acceleration limit that the axis uses",
+                "该轴加速度限值的使用比例", {});
+            add(axis + "_jerk_use", Kind::real, "%", part(32), "part of its jerk limit that the axis uses", "该轴加加速度限值的使用比例",
+                {});
+            ++words_;
+        }
     }
 }
 

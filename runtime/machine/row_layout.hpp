@@ -17,6 +17,7 @@ public:
     void add_machine();
     void add_tasks(const MachineLayout& layout);
     void add_axes(const MachineLayout& layout);
+    void add_groups(const MachineLayout& layout);
     /// Those of `bits` (by place in `names`) come first and share words; a word for each of the others.
     void add_points(SignalGroup group, const std::vector<std::string>& names, const std::vector<std::string>& units,
                     const std::vector<std::uint16_t>& bits);

@@ -70,6 +70,42 @@ void put_axis(Row& row, const AxisView& v) noexcept {
     row.put(Packed{}.add(v.digital_inputs, 32).add(v.drive_error, 16).add(v.queued_count, 8).word());
 }
 
+/// In hundredths of a percent.
+std::uint16_t short_part(float part) noexcept {
+    constexpr float scale = 10'000, most = 65'535;
+    return static_cast<std::uint16_t>(std::min(part * scale + 0.5F, most));
+}
+
+void put_group(Row& row, const SeenGroup& g, const MachineLayout::GroupInfo& info) noexcept {
+    if (info.arm) {
+        constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+        for (const auto& pose : {g.tool.set, g.tool.actual})
+            for (const double value : pose) row.put(g.tool.known ? value : nowhere);
+        row.put(g.tool.known ? g.tool.speed : nowhere);
+        row.put(g.tool.known ? g.tool.actual_speed : nowhere);
+    }
+    row.put(g.along.velocity);
+    row.put(g.along.acceleration);
+    row.put(g.along.to_go);
+    row.put(100 * g.along.progress);
+    const bool by_axis = g.along.limiter == axes::PathLimiter::axis && g.along.limiting_place < g.members.size() &&
+                         g.members[g.along.limiting_place].valid();
+    row.put(Packed{}
+                .add(g.state, 8)
+                .add(g.along.limiter, 8)
+                .add(by_axis ? g.members[g.along.limiting_place].index + 1 : 0, 16)
+                .add(g.active_kind, 8)
+                .add(g.queued, 8)
+                .add(g.interrupted, 1)
+                .word());
+    row.put(Packed{}.add(g.active, 32).add(g.error, 16).word());
+    for (std::size_t i = 0; i < info.members.size(); ++i) {
+        const bool there = g.members[i].index == info.members[i];  // else a program has put another one there
+        const auto use = there ? g.use[i] : SeenGroup::Use{};
+        row.put(Packed{}.add(short_part(use.velocity), 16).add(short_part(use.acceleration), 16).add(short_part(use.jerk), 16).word());
+    }
+}
+
 /// 64 of them a word.
 template <class ValueOf>
 void put_bits(Row& row, const std::vector<std::uint16_t>& points, const ValueOf& value_of) noexcept {
@@ -104,20 +140,24 @@ RowWriter::Plan RowWriter::plan(const MachineBody& body, const MachineLayout& la
     row.add_machine();
     row.add_tasks(layout);
     row.add_axes(layout);
+    row.add_groups(layout);
     row.add_points(SignalGroup::input, layout.inputs, layout.input_units, out.inputs.bits);
     row.add_points(SignalGroup::output, layout.outputs, layout.output_units, out.outputs.bits);
     row.add_variables(layout);
+    out.groups = layout.groups;
     out.words = row.words();
     out.signals = row.take_signals();
     return out;
 }
 
-RowWriter::RowWriter(const MachineBody& body, const ProgramRunner& programs, const MachineLayout& layout)
-    : RowWriter(body, programs, plan(body, layout)) {}
+RowWriter::RowWriter(const MachineBody& body, const GroupDesk& groups, const ProgramRunner& programs, const MachineLayout& layout)
+    : RowWriter(body, groups, programs, plan(body, layout)) {}
 
-RowWriter::RowWriter(const MachineBody& body, const ProgramRunner& programs, Plan plan)
+RowWriter::RowWriter(const MachineBody& body, const GroupDesk& groups, const ProgramRunner& programs, Plan plan)
     : body_(body),
+      groups_(groups),
       programs_(programs),
+      group_places_(std::move(plan.groups)),
       inputs_(std::move(plan.inputs)),
       outputs_(std::move(plan.outputs)),
       ring_(std::move(plan.signals), plan.words, rows_of(body.config.recording, body.config.cycle), body.config.cycle) {}
@@ -142,6 +182,8 @@ void RowWriter::step() noexcept {
                     .add(i + 1 < tasks.size() ? short_time(tasks[i + 1].run.count()) : 0, 32)
                     .word());
     for (const auto& axis : body_.axes) put_axis(row, axis.view());
+    const auto groups = groups_.seen();
+    for (std::size_t i = 0; i < groups.size(); ++i) put_group(row, groups[i], group_places_[i]);
     const auto input = [&](std::uint16_t i) { return body_.io.input_values()[i].value; };
     const auto output = [&](std::uint16_t i) { return body_.io.output_value(i); };
     put_bits(row, inputs_.bits, input);

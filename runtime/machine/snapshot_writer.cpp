@@ -9,6 +9,7 @@ void SnapshotWriter::prepare() {
     prototype.slaves.resize(body_.bus.slave_count());
     prototype.axes.resize(body_.axes.size());
     prototype.following_peaks.resize(body_.following_peaks.size());
+    prototype.groups.resize(groups_.seen().size());
     prototype.inputs.resize(body_.io.inputs().size());
     prototype.outputs.resize(body_.io.outputs().size());
     prototype.input_values.resize(prototype.inputs.size());
@@ -45,6 +46,7 @@ void SnapshotWriter::step() noexcept {
     for (std::size_t i = 0; i < s.slaves.size(); ++i) s.slaves[i] = body_.bus.health(i);
     for (std::size_t i = 0; i < s.axes.size(); ++i) s.axes[i] = body_.axes[i].view();
     std::ranges::copy(body_.following_peaks, s.following_peaks.begin());
+    std::ranges::copy(groups_.seen(), s.groups.begin());
     std::ranges::copy(body_.io.inputs(), s.inputs.begin());
     for (std::size_t i = 0; i < s.outputs.size(); ++i) s.outputs[i] = body_.io.output_word(i);
     std::ranges::copy(body_.io.input_values(), s.input_values.begin());

@@ -2,6 +2,7 @@
 // Step 10: the one copy of the machine's state for everybody else. Copying allocates nothing.
 
 #include "core/latest_value.hpp"
+#include "runtime/machine/group_desk.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/measuring.hpp"
 #include "runtime/machine/program_runner.hpp"
@@ -11,8 +12,8 @@ namespace taktwerk::runtime {
 
 class SnapshotWriter {
 public:
-    SnapshotWriter(MachineBody& body, const Measuring& measuring, const ProgramRunner& programs)
-        : body_(body), measuring_(measuring), programs_(programs) {}
+    SnapshotWriter(MachineBody& body, const Measuring& measuring, const GroupDesk& groups, const ProgramRunner& programs)
+        : body_(body), measuring_(measuring), groups_(groups), programs_(programs) {}
 
     /// Takes all memory. Before the first step().
     void prepare();
@@ -25,6 +26,7 @@ public:
 private:
     MachineBody& body_;
     const Measuring& measuring_;
+    const GroupDesk& groups_;
     const ProgramRunner& programs_;
     LatestValue<Snapshot> snapshots_;
 };

@@ -12,7 +12,7 @@ namespace taktwerk::runtime {
 
 /// How a value is to be shown: a curve, a 0/1 lane, a lane of named states, whole numbers, bits of a word.
 enum class SignalKind : std::uint8_t { real, bit, state, whole, word };
-enum class SignalGroup : std::uint8_t { axis, input, output, variable, machine, bus, task };
+enum class SignalGroup : std::uint8_t { axis, input, output, variable, machine, bus, task, group };
 
 /// Where a value stands in a row of 64-bit words. The first bit is the lowest one of its word.
 struct SignalCell {

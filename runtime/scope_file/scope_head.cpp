@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 5> kinds{"real", "bit", "state", "whole", "word"};
-constexpr std::array<std::string_view, 7> groups{"axis", "input", "output", "variable", "machine", "bus", "task"};
+constexpr std::array<std::string_view, 8> groups{"axis", "input", "output", "variable", "machine", "bus", "task", "group"};
 constexpr std::array<std::string_view, 3> codings{"real", "natural", "integer"};
 
 Json signal_json(const RecordedSignal& s) {

@@ -9,6 +9,7 @@
 namespace taktwerk::apps {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -133,6 +134,70 @@ TEST(MonitorScreen, OfARingItSaysWhetherItIsClosed) {
     EXPECT_THAT(monitor_screen(ring, layout, {100, 24, false}), Contains(HasSubstr("ring broken (4 + 2)")));
     ring["bus"]["ring"] = "none";
     EXPECT_THAT(monitor_screen(ring, layout, {100, 24, false}), Contains(HasSubstr("bus operational  ")));
+}
+
+Json group() {
+    const auto member = [](const char* axis, double velocity, double acceleration) {
+        return Json{{"axis", axis}, {"velocity_use", velocity}, {"acceleration_use", acceleration}, {"jerk_use", 0}};
+    };
+    return Json{{"name", "arm"},
+                {"unit", "mm"},
+                {"state", "GroupMoving"},
+                {"interrupted", false},
+                {"held", false},
+                {"powered", true},
+                {"error", 0},
+                {"members", Json::array({member("a0", 0.995, 0.2), member("a1", 0.1, 0.45)})},
+                {"tool_known", true},
+                {"tool_set", {250.5, -120.25, 10, 0, 0, 45}},
+                {"tool_actual", {250.4, -120.2, 10, 0, 0, 45}},
+                {"tool_speed", 200},
+                {"tool_actual_speed", 199.5},
+                {"path_velocity", 200},
+                {"limiter", "axis_limit"},
+                {"limiting_axis", "a0"},
+                {"command", "MC_MoveLinearAbsolute"},
+                {"block", "cell.up"},
+                {"progress", 0.42},
+                {"distance_to_go", 70.5},
+                {"remaining_s", 0.6},
+                {"queued", 3},
+                {"override", 1},
+                {"operators_override", 0.5}};
+}
+
+// Where its tool is, how fast, who holds it back, what it does and how far it is.
+TEST(MonitorScreen, AGroupSaysWhatItDoesAndWhoHoldsItBack) {
+    auto with_group = state(2, 0);
+    with_group["groups"] = Json::array({group()});
+    const auto lines = monitor_screen(with_group, layout, {110, 40, false});
+    EXPECT_THAT(lines, Contains(AllOf(HasSubstr(" arm "), HasSubstr("GroupMoving"), HasSubstr("200.0 mm/s, held back by axis a0"))));
+    EXPECT_THAT(lines, Contains(HasSubstr("set    X 250.500  Y -120.250  Z 10.000 mm  RX 0.000  RY 0.000  RZ 45.000 deg   200.0 mm/s")));
+    EXPECT_THAT(lines, Contains(HasSubstr("actual X 250.400")));
+    EXPECT_THAT(lines, Contains(HasSubstr("MC_MoveLinearAbsolute cell.up  42 %, 70.5 mm to go, 0.6 s, 3 wait   override 50 %")));
+    EXPECT_THAT(lines, Contains(HasSubstr("limits a0 100 % v  a1 45 % a")));
+    for (const auto& line : lines) EXPECT_LE(columns(line), 110u) << line;
+
+    with_group["groups"][0]["interrupted"] = with_group["groups"][0]["held"] = true;
+    with_group["groups"][0]["state"] = "GroupStandby";
+    EXPECT_THAT(monitor_screen(with_group, layout, {110, 40, false}), Contains(HasSubstr("INTERRUPTED by a person")));
+}
+
+TEST(MonitorScreen, AGroupInErrorSaysWhyAlsoWhereThereIsNoRoom) {
+    auto broken = state(12, 0);
+    broken["groups"] = Json::array({group()});
+    auto& arm = broken["groups"][0];
+    arm["state"] = "GroupErrorStop";
+    arm["error"] = 77;
+    arm["error_name"] = "out_of_reach";
+    arm["error_text"] = "The tool cannot be there";
+    arm["error_cause"] = "It is too far";
+    arm["error_remedy"] = "Come nearer";
+    for (const std::size_t rows : {24u, 60u}) {
+        const auto lines = monitor_screen(broken, layout, {80, rows, false});
+        EXPECT_THAT(lines, Contains(HasSubstr("out_of_reach: The tool cannot be there"))) << rows;
+        EXPECT_THAT(lines, Contains(HasSubstr("-> Come nearer"))) << rows;
+    }
 }
 
 TEST(MonitorScreen, EmergencyStopIsInTheFirstLine) {

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "apps/plot/path_picture.hpp"
 #include "apps/plot/plot_data.hpp"
 #include "apps/plot/plot_script.hpp"
 #include "apps/plot/recording_csv.hpp"
@@ -272,6 +273,52 @@ TEST(PlotScript, DrawsTargetsHandOversAndTheBitsThatChange) {
     EXPECT_THAT(*asked, HasSubstr("feeder.busy"));
     named.bits = {"in.stat"};
     EXPECT_EQ(plot_script(*trace, named).error().code, "plot.unknown_bit");
+}
+
+const std::string way_heading =
+    "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/"
+    "s],x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
+    "x.actual_torque,x.following_error,group.arm.tool_x[mm],group.arm.tool_y[mm],group.arm.tool_z[mm],group.arm.tool_actual_x[mm],"
+    "group.arm.tool_actual_y[mm],group.arm.tool_actual_z[mm],group.arm.tool_speed[mm/s],group.arm.path_velocity[mm/"
+    "s],group.arm.x_velocity_use[%],"
+    "group.arm.x_acceleration_use[%],group.arm.x_jerk_use[%],group.flat.path_velocity[mm/s]\n";
+
+// 40 wide, 160 high, 0 deep: one scale for all three directions, the point where it began, a gap where nobody knew where the tool was.
+TEST(PathScript, DrawsTheWayToOneScale) {
+    const std::string axis = ",0,0,1,0,0,0,0,0,0,0,0,";
+    const auto trace =
+        parse_trace(way_heading + "1" + axis + "nan,nan,nan,nan,nan,nan,nan,0,0,0,0,0\n" + "2" + axis +
+                        "220,-80,5,221,-79,5,100,100,40,90.25,10,0\n" + "3" + axis + "260,80,5,259,79,5,200,200,100,20,30,0\n",
+                    "t.csv");
+    ASSERT_TRUE(trace) << trace.error().text();
+
+    const auto script = path_script(*trace, {"t", "t.svg", "arm", 0, 0});
+
+    ASSERT_TRUE(script) << script.error().text();
+    EXPECT_THAT(*script, HasSubstr("$set << EOD\n220 -80 5\n260 80 5\nEOD"));
+    EXPECT_THAT(*script, HasSubstr("$actual << EOD\n221 -79 5\n259 79 5\nEOD"));
+    EXPECT_THAT(*script, HasSubstr("$start << EOD\n220 -80 5\nEOD"));
+    // 160 / 470 pixels and 8 % more is what a pixel is worth; the pictures are 511 x 470 pixels around (240, 0) and (240, 5).
+    const double half_high = 1.08 * 160 / 2, half_wide = 1.08 * 160 / 470 * 511 / 2;
+    EXPECT_THAT(*script, HasSubstr(fmt::format("set xrange [{:.9g}:{:.9g}]; set yrange [{:.9g}:{:.9g}]", 240 - half_wide, 240 + half_wide,
+                                               -half_high, half_high)));
+    EXPECT_THAT(*script, HasSubstr(fmt::format("set yrange [{:.9g}:{:.9g}]", 5 - half_high, 5 + half_high)));
+    EXPECT_THAT(*script, HasSubstr("'X [mm]'"));
+    EXPECT_THAT(*script, HasSubstr("2.000000 90.25\n3.000000 100\n")) << "of velocity, acceleration and jerk the most";
+}
+
+TEST(PathScript, SaysWhatItCannotDraw) {
+    const std::string axis = ",0,0,1,0,0,0,0,0,0,0,0,";
+    const auto trace = parse_trace(
+        way_heading + "1" + axis + "nan,nan,nan,nan,nan,nan,nan,0,0,0,0,0\n" + "2" + axis + "nan,nan,nan,nan,nan,nan,nan,0,0,0,0,0\n",
+        "t.csv");
+    ASSERT_TRUE(trace) << trace.error().text();
+    EXPECT_EQ(path_script(*trace, {"t", "t.svg", "arn", 0, 0}).error().code, "plot.unknown_group");
+    EXPECT_THAT(path_script(*trace, {"t", "t.svg", "arn", 0, 0}).error().remedy, HasSubstr("'arm'"));
+    EXPECT_EQ(path_script(*trace, {"t", "t.svg", "flat", 0, 0}).error().code, "plot.no_tool") << "no arm";
+    EXPECT_EQ(path_script(*trace, {"t", "t.svg", "arm", 0, 0}).error().code, "plot.no_tool") << "known nowhere";
+    EXPECT_EQ(path_script(*trace, {"t", "t.svg", "arm", 5, 6}).error().code, "plot.empty_window");
+    EXPECT_TRUE(plot_script(*trace, {"t", "t.svg", {}, 0, 0, false})) << "its axes all the same";
 }
 
 TEST(PlotScript, TextsOfTheOutsideCannotLeaveTheirQuotes) {

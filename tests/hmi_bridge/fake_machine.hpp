@@ -16,6 +16,7 @@ public:
         its_layout.axes = {{"x", "mm", false, true, 10, 50, "x_drive", "sv33-e", 0},
                            {"y", "mm", false, true, 10, 50, "y_drive", "sv33-e", 0},
                            {"turret", "deg", true, true, 5, 20, "", "", 0}};
+        its_layout.groups = {{"table", "mm", {0, 1}, true, {true, true, false, false, false, false}}};
         its_layout.slaves = {"x_drive", "y_drive"};
         its_layout.inputs = {"start_button", "estop_ok"};
         its_layout.outputs = {"lamp_run"};
@@ -36,6 +37,7 @@ public:
         snapshot.bus_phase = ecat::Master::Phase::operational;
         snapshot.slaves.resize(2);
         snapshot.axes.resize(3);
+        snapshot.groups.resize(1);
         snapshot.inputs = {0, 1};
         snapshot.outputs = {1};
         snapshot.parameters = {200, 1, 2};

@@ -80,6 +80,10 @@ TEST_F(Deeds, EachKindIsToldWithWhoAndWhatAndItsNumbers) {
     told(CommandKind::unforce, "start_button", 0, 0, "unforce input start_button");
     told(CommandKind::release_forces, "", 0, 0, "release_forces");
     told(CommandKind::override_velocity, "x", 0.5, 0, "override axis x 50 %");
+    told(CommandKind::group_halt, "table", 0, 0, "group_halt group table");
+    told(CommandKind::group_interrupt, "table", 0, 0, "group_interrupt group table");
+    told(CommandKind::group_override, "table", 0.5, 0, "group_override group table 50 %");
+    told(CommandKind::group_enable, "table", 0, 0, "group_enable group table");
     told(CommandKind::reset_peaks, "all", 0, 0, "reset_peaks all axes");
     told(CommandKind::reset_statistics, "", 0, 0, "reset_statistics");
     told(CommandKind::acknowledge, "", 0, 0, "acknowledge");

@@ -24,6 +24,7 @@
 #include "taktwerk_lcm/program_values_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v2_t.hpp"
+#include "taktwerk_lcm/whole_state_v3_t.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -53,12 +54,15 @@ TEST(LcmTypes, FingerprintsDoNotChange) {
         {"whole_event_v1_t", {whole_event_v1_t::getHash(), 0xf04824e4569a9217u}},
         {"whole_force_v1_t", {whole_force_v1_t::getHash(), 0x1494e34d203bbc60u}},
         {"whole_giver_v1_t", {whole_giver_v1_t::getHash(), 0xb85550231ca38212u}},
+        {"whole_group_v1_t", {whole_group_v1_t::getHash(), 0x8f8b29d217738476u}},
+        {"whole_group_member_v1_t", {whole_group_member_v1_t::getHash(), 0x97a0ff968f2e58a5u}},
         {"whole_measure_v1_t", {whole_measure_v1_t::getHash(), 0xc625e1affe951bf1u}},
         {"whole_point_v1_t", {whole_point_v1_t::getHash(), 0x8c90734f0868e5a8u}},
         {"whole_program_v1_t", {whole_program_v1_t::getHash(), 0xea99b3b421c32f1eu}},
         {"whole_slave_v1_t", {whole_slave_v1_t::getHash(), 0xa3decc79206f3321u}},
         {"whole_state_v1_t", {whole_state_v1_t::getHash(), 0xf48ecc8775cb588eu}},
         {"whole_state_v2_t", {whole_state_v2_t::getHash(), 0xaa5e1140b31fb16au}},
+        {"whole_state_v3_t", {whole_state_v3_t::getHash(), 0xf5a7ee78c2284487u}},
         {"whole_statistics_v1_t", {whole_statistics_v1_t::getHash(), 0x5b85a89c093cd5e5u}},
         {"whole_statistics_v2_t", {whole_statistics_v2_t::getHash(), 0x366d4af8a7e70253u}},
         {"whole_task_v1_t", {whole_task_v1_t::getHash(), 0x00bc836482d1411fu}},

@@ -116,6 +116,27 @@ TEST_F(RequestsTest, AnOverrideIsAPartOfTheVelocity) {
     EXPECT_EQ(code_for(R"({"id":5,"cmd":"override","value":1})"), "request.missing_key");
 }
 
+// Levels, as a stop of an axis: no age, no sequence and no queue holds them up.
+TEST_F(RequestsTest, AGroupIsHaltedWhateverIsAroundIt) {
+    machine.inbox_size = 0;
+    EXPECT_EQ(ask(R"({"id":7,"cmd":"group_halt","group":"table","utime":0})")["ok"], true);
+    EXPECT_EQ(ask(R"({"id":7,"cmd":"group_halt","group":"table"})")["ok"], true);
+    EXPECT_EQ(machine.stops, (std::vector<std::uint16_t>{1, 0, 1, 0}));
+    EXPECT_EQ(code_for(R"({"id":8,"cmd":"group_halt","group":"tabel"})"), "command.unknown_name");
+    EXPECT_EQ(code_for(R"({"id":9,"cmd":"group_halt"})"), "request.missing_key");
+}
+
+TEST_F(RequestsTest, AnOverrideOfAGroupIsAPartOfTheVelocity) {
+    EXPECT_EQ(ask(R"({"id":1,"cmd":"group_override","group":"table","value":0.25})")["ok"], true);
+    EXPECT_EQ(machine.submitted.back().index, 0);
+    EXPECT_EQ(machine.submitted.back().value, 0.25);
+    for (const char* bad : {R"({"id":2,"cmd":"group_override","group":"table","value":1.5})",
+                            R"({"id":3,"cmd":"group_override","group":"table","value":-0.1})"})
+        EXPECT_EQ(code_for(bad), "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":4,"cmd":"group_override","group":"x","value":1})"), "command.unknown_name") << "an axis is no group";
+    EXPECT_EQ(code_for(R"({"id":5,"cmd":"group_continue","group":"table","utime":0})"), "command.stale");
+}
+
 TEST_F(RequestsTest, HelloSaysWhatRunsAndForHowLong) {
     requests.set_about({"0.1.0", {{"fmt", "9.1.0", "MIT"}}});
     requests.step(now);
@@ -151,7 +172,14 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
                                          R"("cmd":"reset_peaks","axis":"x")",
                                          R"("cmd":"reset_statistics")",
                                          R"("cmd":"measure","axis":"x","press":true,"kind":"step")",
-                                         R"("cmd":"set_value","variable":"cell.start","value":1,"press":true)"};
+                                         R"("cmd":"set_value","variable":"cell.start","value":1,"press":true)",
+                                         R"("cmd":"group_halt","group":"table")",
+                                         R"("cmd":"group_interrupt","group":"table")",
+                                         R"("cmd":"group_continue","group":"table")",
+                                         R"("cmd":"group_override","group":"table","value":0.5)",
+                                         R"("cmd":"group_reset","group":"table")",
+                                         R"("cmd":"group_enable","group":"table")",
+                                         R"("cmd":"group_disable","group":"table")"};
     ASSERT_EQ(lines.size(), command_words.size());
     auto& limits = machine.its_config.limits;  // of an axis that can be measured
     limits.velocity = 200, limits.acceleration = limits.deceleration = 5000, limits.jerk = 100000;
@@ -161,6 +189,8 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
         EXPECT_EQ(answer["ok"], true) << lines[i] << answer;
         if (command_words[i].kind == CommandKind::shutdown) EXPECT_TRUE(machine.shutdown_requested);
         else if (command_words[i].kind == CommandKind::stop) EXPECT_EQ(machine.stops.size(), 1u);
+        else if (command_words[i].kind == CommandKind::group_halt)
+            EXPECT_EQ(machine.stops, (std::vector<std::uint16_t>{0xFFFF, 1, 0})) << "a level for each of its axes, the first one last";
         else EXPECT_EQ(machine.submitted.back().action, command_words[i].action) << lines[i];
     }
 }

@@ -73,6 +73,29 @@ inline void draw(FakeMachine& machine, std::uint64_t seed) {
             *value = number();
         for (auto& value : axis.parameters) value = number();
     }
+    for (auto& group : s.groups) {
+        group.state = static_cast<axes::GroupState>(below(6));
+        group.error = some() ? id(axes::AxisAlarm::following_error) : static_cast<std::uint16_t>(below(60));
+        for (auto* flag :
+             {&group.interrupted, &group.held, &group.resetting, &group.powered, &group.online, &group.in_position, &group.tool.known})
+            *flag = some();
+        group.members = {};
+        for (std::size_t place = 0; place < 4; ++place) {
+            if (some()) group.members[place] = {static_cast<std::uint16_t>(below(5))};
+            group.use[place] = {static_cast<float>(number()), 0.5F, static_cast<float>(number())};
+        }
+        for (std::size_t i = 0; i < 6; ++i) group.tool.set[i] = number(), group.tool.actual[i] = number();
+        for (auto* value : {&group.tool.speed, &group.tool.actual_speed, &group.along.velocity, &group.along.acceleration,
+                            &group.along.to_go, &group.along.progress, &group.override_factor, &group.operators_override})
+            *value = number();
+        group.along.limiter = static_cast<axes::PathLimiter>(below(4));
+        group.along.limiting_place = static_cast<std::uint8_t>(below(6));
+        group.along.remaining = Duration{below(1'000'000'000)};
+        group.active_kind = static_cast<axes::GroupCommandKind>(below(13));
+        group.active = some() ? static_cast<std::uint32_t>(random()) : 0;
+        group.block = some() ? &block_of_rich_machine : nullptr;
+        group.queued = static_cast<std::uint8_t>(below(17));
+    }
     s.alarms.resize(3);
     s.alarm_count = below(4);
     for (std::size_t i = 0; i < s.alarms.size(); ++i) {

@@ -40,7 +40,9 @@ export const pause = (ms: number): Promise<void> => new Promise((resolve) => set
 export interface CellOptions {
     /** The machine's cycle: four times as long as the demo's, so that a busy computer has more time for each. */
     cycle?: string;
-    /** What is changed in the demo's machine file. */
+    /** Of config/machines/; the demo where it is left out. */
+    file?: string;
+    /** What is changed in that machine file. */
     machine?: (yaml: string) => string;
     /** Of `taktwerk hmi`. */
     role?: string;
@@ -82,7 +84,7 @@ export class Cell {
 
     async start(options: CellOptions = {}): Promise<void> {
         witness = this;
-        const demo = readFileSync(join(source, 'config/machines/demo.yaml'), 'utf8');
+        const written = readFileSync(join(source, 'config/machines', options.file ?? 'demo.yaml'), 'utf8'), demo = /^hmi:$/m.test(written) ? written : `${written}\nhmi:\n`;
         const file = join(this.folder, 'demo.yaml');
         copyFileSync(join(source, 'config/machines/demo-cell.svg'), join(this.folder, 'demo-cell.svg'));
         writeFileSync(file, (options.machine ?? quiet)(demo).replace('cycle: 1 ms', `cycle: ${options.cycle ?? '4 ms'}`).replace(/^hmi:$/m, `hmi:\n  socket: ${this.socket}`));

@@ -52,6 +52,14 @@ for (const [group, file, where] of groups)
         for (const word of words) assert.ok(Object.hasOwn(texts, `${group}_${word}`), `${group}_${word}`);
     });
 
+// A table each, in the order of the enumerators.
+for (const [group, file, where] of [['group', 'axes/group/axis_group.cpp', /name\(GroupState state\)[^}]*\}/], ['limiter', 'axes/group/group_words.cpp', /name\(PathLimiter limiter\)[^}]*\}/]] as const)
+    test(`each word of ${file} is in the table as ${group}`, () => {
+        const words = [...(where.exec(readFileSync(join(source, file), 'utf8'))?.[0] ?? '').matchAll(/"([^"]+)"/g)].map((m) => m[1]);
+        assert.ok(words.length >= 4, `${file}: the function was not found`);
+        for (const word of words) assert.ok(Object.hasOwn(texts, `${group}_${word}`), `${group}_${word}`);
+    });
+
 test('no text stands in the pages themselves', () => {
     const folder = join(source, 'hmi_bridge/page/source');
     const files = (readdirSync(folder, { recursive: true }) as string[]).filter((file) => file.endsWith('.ts') && !file.startsWith('texts'));

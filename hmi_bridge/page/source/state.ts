@@ -99,6 +99,60 @@ export interface CommandEvent {
     remedy: string;
 }
 
+/** What a member uses of its limits is a part: 1 = at the limit. */
+export interface GroupMember {
+    axis: string;
+    ident: number;
+    unit: string;
+    set_position: Real;
+    actual_position: Real;
+    set_velocity: Real;
+    velocity_use: Real;
+    acceleration_use: Real;
+    jerk_use: Real;
+}
+
+/** X Y Z in the group's unit, RX RY RZ in degrees. */
+export type ToolPose = [Real, Real, Real, Real, Real, Real];
+
+export interface GroupState {
+    name: string;
+    unit: string;
+    state: string;
+    interrupted: boolean;
+    /** It was a person. */
+    held: boolean;
+    resetting: boolean;
+    powered: boolean;
+    online: boolean;
+    in_position: boolean;
+    error: number;
+    /** In English. */
+    error_name?: string;
+    error_text?: string;
+    error_cause?: string;
+    error_remedy?: string;
+    members: GroupMember[];
+    tool_known: boolean;
+    tool_set: ToolPose;
+    tool_actual: ToolPose;
+    tool_speed: Real;
+    tool_actual_speed: Real;
+    path_velocity: Real;
+    path_acceleration: Real;
+    limiter: string;
+    limiting_axis: string;
+    command: string;
+    block: string;
+    command_id: number;
+    progress: Real;
+    distance_to_go: Real;
+    remaining_s: Real;
+    queued: number;
+    override: Real;
+    operators_override: Real;
+}
+
 export interface MachineState {
     machine: string;
     cycle: number;
@@ -113,6 +167,8 @@ export interface MachineState {
     bus: Record<string, number | string>;
     slaves: { name: string; state: string; al_status_code: number; fresh: boolean; age: number }[];
     axes: AxisState[];
+    /** Absent from an older runtime. */
+    groups?: GroupState[];
     programs: { name: string; state: string }[];
     tasks: { name: string; releases: number; overruns: number; run_ns: number; run_max_ns: number }[];
     input_units: Record<string, string>;
@@ -154,6 +210,8 @@ export interface MachineLayout {
     machine: string;
     cycle_ns: number;
     axes: AxisLayout[];
+    /** `commands`: which of X Y Z RX RY RZ the arm commands. */
+    groups?: { name: string; unit: string; members: string[]; arm: boolean; commands: boolean[] }[];
     slaves: string[];
     inputs: string[];
     outputs: string[];

@@ -4,6 +4,7 @@ import { alarms } from './texts/alarms';
 import { axis } from './texts/axis';
 import { bus } from './texts/bus';
 import { frame } from './texts/frame';
+import { group } from './texts/group';
 import { io } from './texts/io';
 import { measure } from './texts/measure';
 import { programs } from './texts/programs';
@@ -19,6 +20,7 @@ export const rooms = {
     axis,
     bus,
     frame,
+    group,
     io,
     measure,
     programs,

@@ -33,6 +33,7 @@
 #include "taktwerk_lcm/whole_slave_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v2_t.hpp"
+#include "taktwerk_lcm/whole_state_v3_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v1_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v2_t.hpp"
 #include "taktwerk_lcm/whole_task_v1_t.hpp"
@@ -101,7 +102,9 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
     expect("whole_program_v1_t", whole_program_v1_t::getHash());
     expect("whole_slave_v1_t", whole_slave_v1_t::getHash());
     expect("whole_state_v1_t", whole_state_v1_t::getHash());
+    expect("whole_group_v1_t", whole_group_v1_t::getHash());
     expect("whole_state_v2_t", whole_state_v2_t::getHash());
+    expect("whole_state_v3_t", whole_state_v3_t::getHash());
     expect("whole_statistics_v1_t", whole_statistics_v1_t::getHash());
     expect("whole_statistics_v2_t", whole_statistics_v2_t::getHash());
     expect("whole_task_v1_t", whole_task_v1_t::getHash());

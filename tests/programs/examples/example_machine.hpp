@@ -93,6 +93,18 @@ public:
         }
         throw std::runtime_error("no parameter " + name);
     }
+    /// What an operator's command comes to.
+    runtime::CommandAnswer command(runtime::OperatorCommand command) {
+        command.client = 1;
+        command.sequence = ++sequence_;
+        command.expires = clock_.now() + 1s;
+        EXPECT_TRUE(machine_->submit(command));
+        std::optional<runtime::CommandAnswer> answer;
+        EXPECT_TRUE(runner_->run_until([&] { return (answer = machine_->next_answer()).has_value(); }, 1s));
+        return answer.value_or(runtime::CommandAnswer{});
+    }
+    [[nodiscard]] runtime::Machine& machine() { return *machine_; }
+    [[nodiscard]] const runtime::Snapshot& snapshot() const { return *latest_; }
     /// The hardware behind the bus: what really moves.
     [[nodiscard]] runtime::World& world() { return *world_; }
     [[nodiscard]] const runtime::MachineConfig& config() const { return machine_->config(); }

@@ -4,6 +4,7 @@ import { Key } from '../texts';
 import { alarms } from './alarms';
 import { axis_page } from './axis';
 import { bus } from './bus';
+import { group_page } from './group';
 import { io } from './io';
 import { measure } from './measure';
 import { overview } from './overview';
@@ -31,6 +32,7 @@ export const pages: readonly Entry[] = [
     { name: 'view', title: 'view_page', make: builder_view, under: 'view' },  // a tab each: frame.ts
     { name: 'axis', title: 'axis', make: axis_page },
     { name: 'measure', title: 'axis_measure', make: measure, under: 'axis' },
+    { name: 'group', title: 'group_page', make: group_page, offered: (desk) => (desk.link.layout?.groups ?? []).length > 0 },
     { name: 'scope', title: 'scope', make: scope, alone: true },
     { name: 'alarms', title: 'alarms', make: alarms },
     { name: 'io', title: 'io', make: io },

@@ -1,0 +1,38 @@
+#include "axes/group/group_words.hpp"
+
+#include <array>
+
+namespace taktwerk::axes {
+
+std::string_view name(PathLimiter limiter) noexcept {
+    constexpr std::array<std::string_view, 4> names{"none", "command", "axis_limit", "override_factor"};
+    return names[static_cast<std::size_t>(limiter)];
+}
+
+std::string_view name(GroupCommandKind kind) noexcept {
+    constexpr std::array<std::string_view, 19> names{
+        "none",
+        "MC_MoveLinearAbsolute",
+        "MC_MoveLinearRelative",
+        "MC_MoveCircularAbsolute",
+        "MC_MoveCircularRelative",
+        "MC_MoveDirectAbsolute",
+        "MC_MoveDirectRelative",
+        "MC_MovePath",
+        "MC_GroupJog",
+        "MC_GroupWaitTime",
+        "MC_GroupHalt",
+        "MC_GroupStop",
+        "MC_GroupInterrupt",
+        "MC_GroupContinue",
+        "MC_GroupDisable",
+        "MC_SetCoordinateTransform",
+        "MC_GroupWriteToolData",
+        "MC_GroupSetPosition",
+        "MC_GroupSetPosition",
+    };
+    static_assert(names.size() == static_cast<std::size_t>(GroupCommandKind::set_position_relative) + 1);
+    return names[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,16 @@
+#pragma once
+// What a group does and what limits it, as people read it: stable words, as they are spelled in traces and JSON.
+
+#include <string_view>
+
+#include "axes/group/group_command.hpp"
+#include "axes/group/group_view.hpp"
+
+namespace taktwerk::axes {
+
+/// "none", "command", "axis_limit", "override_factor": as of an axis' velocity.
+[[nodiscard]] std::string_view name(PathLimiter limiter) noexcept;
+/// The name of its block: "MC_MoveLinearAbsolute"; "none".
+[[nodiscard]] std::string_view name(GroupCommandKind kind) noexcept;
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,97 @@
+#include <cmath>
+
+#include "axes/axis/alarms.hpp"
+#include "axes/axis/error_table.hpp"
+#include "axes/group/group_words.hpp"
+#include "hmi_bridge/state/lcm_text.hpp"
+#include "hmi_bridge/state/whole_state.hpp"
+#include "runtime/alarms.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using runtime::SeenGroup;
+
+/// Of a member it is an alarm, of the path the number of an error.
+void fill_error(whole_group_v1_t& out, std::uint16_t error) {
+    out.error = error;
+    const auto put = [&](std::string_view name, std::string_view text, std::string_view cause, std::string_view remedy) {
+        put_text(out.error_name, name);
+        put_text(out.error_text, text);
+        put_text(out.error_cause, cause);
+        put_text(out.error_remedy, remedy);
+    };
+    const auto* alarm = find_alarm(axes::axis_alarms, error);
+    if (!alarm) alarm = find_alarm(runtime::machine_alarms, error);
+    const auto* text = axes::find_error(static_cast<axes::ErrorId>(error));
+    if (alarm) put(alarm->name, {}, alarm->cause, alarm->remedy);  // its sentence, with its numbers, stands among the alarms
+    else if (text && error != 0) put(text->name, text->english.text, text->english.cause, text->english.remedy);
+    else put({}, {}, {}, {});
+}
+
+void fill_members(whole_group_v1_t& out, const SeenGroup& group, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+    out.members.clear();
+    for (std::size_t place = 0; place < group.members.size(); ++place) {
+        const auto axis = group.members[place].index;
+        if (!group.members[place].valid() || axis >= s.axes.size() || axis >= layout.axes.size()) continue;
+        auto& member = out.members.emplace_back();
+        put_text(member.axis, layout.axes[axis].name);
+        member.ident = static_cast<std::int32_t>(place + 1);
+        put_text(member.unit, layout.axes[axis].unit);
+        member.set_position = s.axes[axis].set_position;
+        member.actual_position = s.axes[axis].actual_position;
+        member.set_velocity = s.axes[axis].set_velocity;
+        member.velocity_use = group.use[place].velocity;
+        member.acceleration_use = group.use[place].acceleration;
+        member.jerk_use = group.use[place].jerk;
+    }
+    out.member_count = static_cast<std::int32_t>(out.members.size());
+}
+
+void fill_way(whole_group_v1_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+    out.tool_known = group.tool.known;
+    for (std::size_t i = 0; i < 6; ++i) {
+        out.tool_set[i] = group.tool.set[i];
+        out.tool_actual[i] = group.tool.actual[i];
+    }
+    out.tool_speed = group.tool.speed;
+    out.tool_actual_speed = group.tool.actual_speed;
+    const auto& along = group.along;
+    out.path_velocity = along.velocity;
+    out.path_acceleration = along.acceleration;
+    put_text(out.limiter, name(along.limiter));
+    const auto limiting = along.limiter == axes::PathLimiter::axis && along.limiting_place < group.members.size()
+                              ? group.members[along.limiting_place]
+                              : axes::AxisRef{};
+    put_text(out.limiting_axis, limiting.valid() && limiting.index < layout.axes.size() ? std::string_view(layout.axes[limiting.index].name)
+                                                                                        : std::string_view{});
+    put_text(out.command, group.active != 0 ? name(group.active_kind) : std::string_view{});
+    put_text(out.block, layout.block_at(group.block));
+    out.command_id = group.active;
+    out.progress = along.progress;
+    out.distance_to_go = along.to_go;
+    out.remaining_s = to_seconds(along.remaining);
+    out.queued = group.queued;
+    out.override_velocity = group.override_factor;
+    out.operators_override = group.operators_override;
+}
+
+}  // namespace
+
+void fill(whole_group_v1_t& out, const runtime::Snapshot& snapshot, const runtime::MachineLayout& layout, std::size_t index) {
+    const auto& group = snapshot.groups[index];
+    put_text(out.name, layout.groups[index].name);
+    put_text(out.unit, layout.groups[index].unit);
+    put_text(out.state, name(group.state));
+    out.interrupted = group.interrupted;
+    out.held = group.held;
+    out.resetting = group.resetting;
+    out.powered = group.powered;
+    out.online = group.online;
+    out.in_position = group.in_position;
+    fill_error(out, group.error);
+    fill_members(out, group, snapshot, layout);
+    fill_way(out, group, layout);
+}
+
+}  // namespace taktwerk::hmi

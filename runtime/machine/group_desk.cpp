@@ -1,0 +1,150 @@
+#include "runtime/machine/group_desk.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "axes/group/member_limits.hpp"
+
+namespace taktwerk::runtime {
+
+using axes::ErrorId;
+using axes::GroupCommandKind;
+
+namespace {
+
+double length_of(const std::array<double, 6>& velocity) noexcept { return std::hypot(velocity[0], velocity[1], velocity[2]); }
+
+/// X Y Z as they are, turns in degrees.
+std::array<double, 6> for_people(std::array<double, 6> pose) noexcept {
+    constexpr double degrees = 180 / std::numbers::pi;
+    for (std::size_t i = 3; i < 6; ++i) pose[i] *= degrees;
+    return pose;
+}
+
+float part(double value, double limit) noexcept {
+    return limit > 0 && std::isfinite(limit) ? static_cast<float>(std::abs(value) / limit) : 0.0F;
+}
+
+}  // namespace
+
+GroupDesk::GroupDesk(MachineBody& body, HandMotion& hands)
+    : body_(body), hands_(hands), seen_(body.axis_groups.size()), held_(body.axis_groups.size()), accelerations_(body.axis_groups.size()) {}
+
+std::uint64_t GroupDesk::newest_stop(std::size_t group) const noexcept {
+    std::uint64_t newest = 0;
+    if (group < seen_.size())
+        for (const auto member : body_.axis_groups[group].view().members)
+            if (member.valid()) newest = std::max(newest, hands_.newest_stop(member.index));
+    return newest;
+}
+
+axes::Owner GroupDesk::owner_of(std::size_t group) const noexcept {
+    for (const auto member : body_.axis_groups[group].view().members)
+        if (member.valid()) return body_.axes[member.index].view().owner;
+    return axes::Owner::none;
+}
+
+Verdict GroupDesk::submit(std::size_t group, GroupCommandKind kind, axes::Owner owner) noexcept {
+    axes::GroupCommand command;
+    command.kind = kind;
+    return verdict_of(body_.axis_groups.submit(ref(group), command, owner).error);
+}
+
+Verdict GroupDesk::halt(std::size_t group) noexcept {
+    Verdict first;
+    for (const auto member : body_.axis_groups[group].view().members) {
+        if (!member.valid()) continue;
+        const auto each = hands_.stop(member.index);
+        if (first.answer == Answer::accepted) first = each;
+    }
+    return first;
+}
+
+// As a stop: carried out in the name of whoever moves it.
+Verdict GroupDesk::interrupt(std::size_t group) noexcept {
+    const auto verdict = submit(group, GroupCommandKind::interrupt, owner_of(group));
+    if (verdict.answer == Answer::accepted) held_[group] = 1;
+    return verdict;
+}
+
+// What a program has interrupted, it has for its own reasons: nobody at a panel knows whether they are over.
+Verdict GroupDesk::go_on(std::size_t group) noexcept {
+    if (body_.emergency) return {Answer::not_possible_now, ErrorId::interlocked};
+    if (held_[group] == 0) return verdict_of(ErrorId::nothing_interrupted);
+    const auto verdict = submit(group, GroupCommandKind::resume, owner_of(group));
+    if (verdict.answer == Answer::accepted) held_[group] = 0;
+    return verdict;
+}
+
+Verdict GroupDesk::execute(const OperatorCommand& command) noexcept {
+    const std::size_t group = command.index;
+    if (group >= seen_.size()) return {Answer::unknown_name};
+    switch (command.action) {
+        case OperatorAction::group_halt: return halt(group);
+        case OperatorAction::group_interrupt: return interrupt(group);
+        case OperatorAction::group_continue: return go_on(group);
+        case OperatorAction::group_override:
+            if (body_.axis_groups[group].set_operators_override(command.value) != ErrorId::none) return {Answer::bad_value};
+            return {};
+        case OperatorAction::group_reset: return verdict_of(body_.axis_groups.reset(ref(group), command.owner));
+        case OperatorAction::group_enable: return verdict_of(body_.axis_groups.set(ref(group), axes::EnableGroup{}, command.owner));
+        case OperatorAction::group_disable: return submit(group, GroupCommandKind::disable, command.owner);
+        default: return {Answer::unknown_name};
+    }
+}
+
+void GroupDesk::look() noexcept {
+    for (std::size_t i = 0; i < seen_.size(); ++i) look_at(i);
+}
+
+void GroupDesk::look_at_use(const axes::GroupView& view, std::size_t place, SeenGroup& seen) noexcept {
+    const auto limits = axes::path_limits_of(body_.axes[view.members[place].index]);
+    auto& before = accelerations_[static_cast<std::size_t>(&seen - seen_.data())][place];
+    const double jerk = (view.set_acceleration[place] - before) / to_seconds(body_.config.cycle);
+    before = view.set_acceleration[place];
+    seen.use[place] = {part(view.set_velocity[place], limits.velocity), part(view.set_acceleration[place], limits.acceleration),
+                       part(jerk, limits.jerk)};
+}
+
+void GroupDesk::look_at(std::size_t group) noexcept {
+    const auto& view = body_.axis_groups[group].view();
+    auto& seen = seen_[group];
+    if (!view.interrupted && view.interrupting == 0) held_[group] = 0;  // a program went on, or gave it up
+    seen.state = view.state;
+    seen.error = view.error;
+    seen.interrupted = view.interrupted;
+    seen.held = held_[group] != 0;
+    seen.resetting = view.resetting;
+    seen.powered = view.powered;
+    seen.online = view.online;
+    seen.in_position = view.in_position;
+    seen.members = view.members;
+    for (std::size_t i = 0; i < axes::most_members; ++i) {
+        if (view.has(i)) look_at_use(view, i, seen);
+        else seen.use[i] = {};
+    }
+    seen.tool.known = view.tool_known;
+    if (view.tool_known) {
+        seen.tool.set = for_people(view.tool_set);
+        seen.tool.actual = for_people(view.tool_actual);
+        seen.tool.speed = length_of(view.tool_velocity);
+        seen.tool.actual_speed = length_of(view.tool_actual_velocity);
+    } else {
+        seen.tool = {};
+    }
+    seen.along.velocity = view.path_velocity;
+    seen.along.acceleration = view.path_acceleration;
+    seen.along.limiter = view.limiter;
+    seen.along.limiting_place = view.limiting_place;
+    seen.along.to_go = view.remaining_distance;
+    seen.along.progress = view.progress;
+    seen.along.remaining = view.remaining;
+    seen.active_kind = view.active_kind;
+    seen.active = view.active;
+    seen.block = view.block;
+    seen.queued = view.queued_count;
+    seen.override_factor = view.override_factors.velocity;
+    seen.operators_override = view.operators_override;
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,55 @@
+#pragma once
+// What leaves the cycle of a group of axes: the part of axes::GroupView that people look at. Its members' positions stand with the axes of the same
+// snapshot. Plain data.
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "axes/group/group_view.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::runtime {
+
+struct SeenGroup {
+    axes::GroupState state = axes::GroupState::GroupDisabled;
+    std::uint16_t error = 0;   ///< alarm id or ErrorId that led to GroupErrorStop, until it is reset; 0 = none
+    bool interrupted = false;  ///< stands, and MC_GroupContinue goes on
+    bool held = false;         ///< ... and it was a person who interrupted it
+    bool resetting = false, powered = false, online = false, in_position = false;
+
+    std::array<axes::AxisRef, axes::most_members> members{};  ///< by place; invalid: none
+    /// Of a member's set-point, as fractions of what a path may take of that axis: 1 = at the limit. The jerk is that from cycle to cycle.
+    struct Use {
+        float velocity = 0, acceleration = 0, jerk = 0;
+    };
+    std::array<Use, axes::most_members> use{};  ///< by place
+
+    /// The tool's point in the machine (MCS): X Y Z [the group's unit], RX RY RZ [deg]; its speed in a second.
+    struct Tool {
+        bool known = false;  ///< there are kinematics, their joints are members, and the numbers are in reach; else the rest means nothing
+        std::array<double, 6> set{}, actual{};
+        double speed = 0, actual_speed = 0;
+    };
+    Tool tool;
+
+    /// Along the path of the active command; lengths in the group's unit.
+    struct Along {
+        double velocity = 0, acceleration = 0;
+        axes::PathLimiter limiter = axes::PathLimiter::none;
+        std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
+        double to_go = 0, progress = 0;   ///< length left, and 0 to 1
+        Duration remaining{};             ///< as planned now; 0 where nobody can say
+    };
+    Along along;
+
+    axes::GroupCommandKind active_kind = axes::GroupCommandKind::none;
+    axes::CommandId active = 0;
+    const void* block = nullptr;  ///< never followed
+    std::uint8_t queued = 0;
+    double override_factor = 1;     ///< of MC_GroupSetOverride
+    double operators_override = 1;  ///< beside it: the smallest of the group's and its members'
+};
+static_assert(std::is_trivially_copyable_v<SeenGroup>);
+
+}  // namespace taktwerk::runtime
