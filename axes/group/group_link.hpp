@@ -10,13 +10,18 @@
 #include <memory>
 
 #include "axes/group/group_command.hpp"
-#include "axes/group/member_limits.hpp"
 #include "axes/group/way_point.hpp"
 #include "axes/path_time/stretch_exchange.hpp"
 #include "axes/pose.hpp"
 #include "core/spsc_ring.hpp"
 
 namespace taktwerk::axes {
+
+/// What one member may do: u/s, u/s2, u/s3, the same in both directions; u where its software limits hold, else infinite.
+struct MemberLimits {
+    double velocity = 0, acceleration = 0, jerk = 0;
+    double low = 0, high = 0;
+};
 
 struct GroupOrder {
     enum class Kind : std::uint8_t {

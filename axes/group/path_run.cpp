@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "axes/group/group_planner.hpp"
+#include "axes/group/member_limits.hpp"
 #include "axes/path_time/path_player.hpp"
 
 namespace taktwerk::axes {
@@ -16,9 +17,7 @@ constexpr double least_lead_cycles = 4;
 /// A part of a limit that counts as using it.
 constexpr double in_use = 0.98;
 
-}  // namespace
-
-MemberLimits path_limits_of(const Axis& axis) noexcept {
+MemberLimits limits_of(const Axis& axis) noexcept {
     const auto& limits = axis.config().limits;
     MemberLimits m;
     // A path turns: what holds in one direction only is kept in both.
@@ -33,6 +32,8 @@ MemberLimits path_limits_of(const Axis& axis) noexcept {
     m.high = hold ? limits.position_max : std::numeric_limits<double>::infinity();
     return m;
 }
+
+}  // namespace
 
 struct PathRun::Inside {
     Inside(std::shared_ptr<const Kinematics> its_arm, Duration its_cycle)
@@ -87,7 +88,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors) noex
         states_[i] = {};
         if (!members.has(i) || count == max_path_axes) continue;
         order.from[count] = members.axis(i).view().set_position;
-        order.limits[count] = path_limits_of(members.axis(i));
+        order.limits[count] = limits_of(members.axis(i));
         states_[i] = {order.from[count], 0, 0};
         end_[i] = order.from[count];
         in.places[count++] = static_cast<std::uint8_t>(i);
@@ -276,6 +277,11 @@ double PathRun::remaining_time() const noexcept {
     if (!in.player || stops_ || arrived_) return 0;
     const double ends = in.player->stretch_end();
     return std::abs(ends - s_.position - remaining_) <= 1e-9 * std::max(1.0, ends) ? in.player->time_left() : 0;
+}
+
+UsableLimits path_limits_of(const Axis& axis) noexcept {
+    const auto m = limits_of(axis);
+    return {m.velocity, m.acceleration, m.jerk};
 }
 
 std::uint32_t PathRun::late() const noexcept {
