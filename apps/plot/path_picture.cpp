@@ -19,19 +19,19 @@ namespace {
 using Values = std::vector<double>;
 
 // Pixels.
-constexpr double width = 1200, left = 90, right = 18, head = 64, between = 46, panel_gap = 12, plane_height = 470, panel_height = 130,
-                 foot = 60;
-constexpr double plane_width = (width - left - right - 70) / 2;
-constexpr std::size_t bins = 700;
+constexpr double sheet_width = 1200, sheet_left = 90, sheet_right = 18, sheet_head = 64, between = 46, panel_gap = 12, plane_height = 470,
+                 panel_height = 130, sheet_foot = 60;
+constexpr double plane_width = (sheet_width - sheet_left - sheet_right - 70) / 2;
+constexpr std::size_t path_bins = 700;
 constexpr std::size_t most_points = 20'000;  ///< of the way; more are no finer on paper
 constexpr std::array<const char*, 8> colours{"#14507f", "#c8641e", "#2f8f5b", "#8a4fa3", "#b03048", "#6b6f1f", "#207c8c", "#7a5a3a"};
 
-struct Column {
+struct FoundColumn {
     const Values* values = nullptr;
     std::string unit;
 };
 
-Column find(const Trace& trace, const std::string& name) {
+FoundColumn find(const Trace& trace, const std::string& name) {
     for (const auto& value : trace.values)
         if (value.name == name) return {&value.value, value.unit};
     for (const auto& bit : trace.bits)
@@ -83,7 +83,7 @@ public:
         fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
         text += '\n';
     }
-    [[nodiscard]] double x(double pixels) const { return pixels / width; }
+    [[nodiscard]] double x(double pixels) const { return pixels / sheet_width; }
     [[nodiscard]] double y(double pixels) const { return 1 - pixels / height_; }
     void label(double px, double py, std::string_view what, std::string_view align, int size, std::string_view colour) {
         line("set label {} at screen {:.6f}, screen {:.6f} {} font \",{}\" tc rgb \"{}\" noenhanced front", in_gnuplot_quotes(what), x(px),
@@ -124,7 +124,7 @@ public:
 
     void plane(double from_left, const Extent& across, const Extent& up, double unit_a_pixel, const char* across_name, const char* up_name,
                const char* columns) {
-        margins(from_left, from_left + plane_width, head, head + plane_height);
+        margins(from_left, from_left + plane_width, sheet_head, sheet_head + plane_height);
         const auto around = [&](const Extent& extent, double pixels) {
             const double middle = (extent.low + extent.high) / 2, half = pixels * unit_a_pixel / 2;
             return std::pair{middle - half, middle + half};
@@ -134,8 +134,8 @@ public:
         line("set xrange [{:.9g}:{:.9g}]; set yrange [{:.9g}:{:.9g}]", low, high, bottom, top);
         tics('x', low, high, 8);
         tics('y', bottom, top, 8);
-        label(from_left + plane_width / 2, head + plane_height + 32, across_name, "center", 11, "#202020");
-        label(from_left + 8, head + 12, up_name, "left", 11, "#202020");
+        label(from_left + plane_width / 2, sheet_head + plane_height + 32, across_name, "center", 11, "#202020");
+        label(from_left + 8, sheet_head + 12, up_name, "left", 11, "#202020");
         line(
             "plot $actual using {0} with lines lw 4 lc rgb \"#f6bd84\" notitle, $set using {0} with lines lw 1.3 lc rgb \"#14507f\" "
             "notitle, "
@@ -150,7 +150,7 @@ public:
         double width;
     };
     void panel(double top, const std::string& title, const std::vector<Curve>& curves, bool last) {
-        margins(left, width - right, top, top + panel_height);
+        margins(sheet_left, sheet_width - sheet_right, top, top + panel_height);
         const double from = trace_.time_s[rows_.first], to = std::max(trace_.time_s[rows_.last - 1], from + 1e-6);
         Extent range;
         range.take(0);
@@ -165,8 +165,8 @@ public:
             if (at >= from - 1e-9 && at <= to + 1e-9)
                 list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", in_gnuplot_quotes(last ? tick_text(at, times.step) : ""), at);
         line("set xtics ({}) scale 0.3 nomirror", list);
-        label(left, top - 7, title, "left", 10, "#202020");
-        double at = left + 380;
+        label(sheet_left, top - 7, title, "left", 10, "#202020");
+        double at = sheet_left + 380;
         for (const auto& curve : curves) {
             label(at, top - 7, curve.name, "left", 10, curve.colour);
             at += 30 + 7 * static_cast<double>(curve.name.size());
@@ -181,7 +181,8 @@ public:
         for (const auto& curve : curves) {
             bool any = false;
             for (const auto& run : finite_runs(*curve.values, rows_)) {
-                for (const auto& point : decimate(trace_.time_s, *curve.values, run, bins)) line("{:.6f} {:.9g}", point.t, point.value);
+                for (const auto& point : decimate(trace_.time_s, *curve.values, run, path_bins))
+                    line("{:.6f} {:.9g}", point.t, point.value);
                 line("");
                 any = true;
             }
@@ -260,9 +261,10 @@ Result<std::string> path_script(const Trace& trace, const PathRequest& request) 
         return Error{"plot.no_tool", "--path " + request.group, "in this window nobody knew where the tool was",
                      "Choose another part with --from and --to."};
 
-    const double height = head + plane_height + between + 2 * (panel_height + panel_gap + 14) + foot;
+    const double height = sheet_head + plane_height + between + 2 * (panel_height + panel_gap + 14) + sheet_foot;
     PathScript script(trace, rows, height);
-    script.line("set terminal svg size {:.0f},{:.0f} dynamic enhanced font \"DejaVu Sans,10\" background rgb \"#ffffff\"", width, height);
+    script.line("set terminal svg size {:.0f},{:.0f} dynamic enhanced font \"DejaVu Sans,10\" background rgb \"#ffffff\"", sheet_width,
+                height);
     script.line("set output {}", gnuplot_file(request.output));
     script.way("$set", way.set);
     script.way("$actual", way.actual);
@@ -276,10 +278,11 @@ Result<std::string> path_script(const Trace& trace, const PathRequest& request) 
     const double unit_a_pixel =
         1.08 * std::max({extents[0].size() / plane_width, extents[1].size() / plane_height, extents[2].size() / plane_height, 1e-6});
     const auto axis_name = [&](const char* name) { return unit.empty() ? std::string(name) : fmt::format("{} [{}]", name, unit); };
-    script.plane(left, extents[0], extents[1], unit_a_pixel, axis_name("X").c_str(), axis_name("Y").c_str(), "1:2");
-    script.plane(width - right - plane_width, extents[0], extents[2], unit_a_pixel, axis_name("X").c_str(), axis_name("Z").c_str(), "1:3");
+    script.plane(sheet_left, extents[0], extents[1], unit_a_pixel, axis_name("X").c_str(), axis_name("Y").c_str(), "1:2");
+    script.plane(sheet_width - sheet_right - plane_width, extents[0], extents[2], unit_a_pixel, axis_name("X").c_str(),
+                 axis_name("Z").c_str(), "1:3");
 
-    const double speed_top = head + plane_height + between + 14, use_top = speed_top + panel_height + panel_gap + 14;
+    const double speed_top = sheet_head + plane_height + between + 14, use_top = speed_top + panel_height + panel_gap + 14;
     std::vector<PathScript::Curve> speeds;
     if (const auto speed = find(trace, front + "tool_actual_speed"); speed.values) speeds.push_back({speed.values, "actual", "#f6bd84", 3});
     if (const auto speed = find(trace, front + "tool_speed"); speed.values) speeds.push_back({speed.values, "set", "#14507f", 1.3});
@@ -293,10 +296,10 @@ Result<std::string> path_script(const Trace& trace, const PathRequest& request) 
         uses.push_back({&used.back(), members[i], colours[i % colours.size()], 1.2});
     }
     if (!uses.empty()) script.panel(use_top, "part of its limits that an axis uses [%]", uses, true);
-    script.margins(left, width - right, head, height - foot);
+    script.margins(sheet_left, sheet_width - sheet_right, sheet_head, height - sheet_foot);
     script.line("unset border; unset grid; set yrange [0:1]");
-    script.label(left, 22, request.title, "left", 16, "#101010");
-    script.label(left, 44,
+    script.label(sheet_left, 22, request.title, "left", 16, "#101010");
+    script.label(sheet_left, 44,
                  fmt::format("tool of group {}, {:.2f} s to {:.2f} s; set-point over actual, the point: its start", request.group,
                              trace.time_s[rows.first], trace.time_s[rows.last - 1]),
                  "left", 10, "#606060");

@@ -19,6 +19,13 @@
 
 namespace taktwerk::axes {
 
+/// What one member may do: u/s, u/s2, u/s3, the same in both directions; u where its software limits hold, else infinite.
+struct MemberLimits {
+    double velocity = 0, acceleration = 0, jerk = 0;
+    double low = 0, high = 0;
+    double speeding = 0, braking = 0;  ///< u/s2, of a jog in ACS: `acceleration` is the greater of both
+};
+
 struct GroupOrder {
     enum class Kind : std::uint8_t {
         restart,  ///< `members` stand at `from`: forget what was

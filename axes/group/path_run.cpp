@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "axes/group/group_planner.hpp"
+#include "axes/group/member_limits.hpp"
 #include "axes/path_time/path_player.hpp"
 
 namespace taktwerk::axes {
@@ -18,9 +19,7 @@ constexpr std::size_t sections_of_stored_paths = 4096;
 /// A part of a limit that counts as using it.
 constexpr double in_use = 0.98;
 
-}  // namespace
-
-MemberLimits path_limits_of(const Axis& axis) noexcept {
+MemberLimits limits_of(const Axis& axis) noexcept {
     const auto& limits = axis.config().limits;
     MemberLimits m;
     // A path turns: what holds in one direction only is kept in both.
@@ -35,8 +34,6 @@ MemberLimits path_limits_of(const Axis& axis) noexcept {
     m.high = hold ? limits.position_max : std::numeric_limits<double>::infinity();
     return m;
 }
-
-namespace {
 
 void cap(MemberLimits& m, const JoggingDynamics& caps, std::size_t place) noexcept {
     const auto lower = [](double& limit, double most) {
@@ -109,7 +106,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
         states_[i] = {};
         if (!members.has(i) || count == max_path_axes) continue;
         order.from[count] = members.axis(i).view().set_position;
-        order.limits[count] = path_limits_of(members.axis(i));
+        order.limits[count] = limits_of(members.axis(i));
         if (caps != nullptr) cap(order.limits[count], *caps, i);
         states_[i] = {order.from[count], 0, 0};
         end_[i] = order.from[count];
@@ -343,6 +340,11 @@ double PathRun::remaining_time() const noexcept {
     if (!in.player || stops_ || arrived_) return 0;
     const double ends = in.player->stretch_end();
     return std::abs(ends - s_.position - remaining_) <= 1e-9 * std::max(1.0, ends) ? in.player->time_left() : 0;
+}
+
+UsableLimits path_limits_of(const Axis& axis) noexcept {
+    const auto m = limits_of(axis);
+    return {m.velocity, m.acceleration, m.jerk};
 }
 
 std::uint32_t PathRun::late() const noexcept {

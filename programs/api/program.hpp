@@ -35,7 +35,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "axes/axis/motion_context.hpp"
+#include "axes//axis/motion_context.hpp"
+#include "axes/group/path_types.hpp"
 #include "core/alarm.hpp"
 #include "fb_library/block_type.hpp"
 #include "programs/api/declared.hpp"

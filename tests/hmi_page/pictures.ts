@@ -2,6 +2,7 @@
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { Cell, pause, Taste, unhurried, until } from './cell';
+import { group_picture } from './group_picture';
 import { recording_picture, scope_pictures } from './scope_pictures';
 import { small_png } from './small_png';
 
@@ -84,3 +85,4 @@ try {
 } finally {
     await cell.end();
 }
+await group_picture(folder);
