@@ -36,6 +36,7 @@
 #include <type_traits>
 
 #include "axes/axis/motion_context.hpp"
+#include "axes/group/path_types.hpp"
 #include "core/alarm.hpp"
 #include "fb_library/block_type.hpp"
 #include "programs/api/declared.hpp"
