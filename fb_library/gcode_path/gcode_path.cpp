@@ -167,6 +167,12 @@ private:
             return false;
         if (!merger_.extend(first_three(move.to), merge_of(mode))) return false;
         held_.to = scaled(move.to);
+        if (const auto* arc = merger_.arc()) {
+            held_.kind = PathItem::Kind::arc;
+            for (std::size_t i = 0; i < linear_axes; ++i) held_.centre[i] = arc->centre[i] * millimetre_;
+            held_.normal = arc->normal;
+            held_.angle = arc->angle;
+        }
         return true;
     }
     void flush() {

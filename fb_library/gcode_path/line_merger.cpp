@@ -8,16 +8,37 @@ namespace {
 double dot(const Point& a, const Point& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Point minus(const Point& a, const Point& b) noexcept { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
+/// An arc needs points that say where it is: fewer of them lie on many.
+constexpr std::size_t least_lines_of_arc = 4;
+/// More than that is not one arc any more: the way round would be a guess.
+constexpr double most_angle = 3;  // rad
+
 }  // namespace
 
 void LineMerger::begin(const Point& from, const Point& to) noexcept {
     from_ = from;
     ends_[0] = to;
     count_ = 1;
+    bent_ = false;
 }
 
 bool LineMerger::extend(const Point& to, double tolerance) noexcept {
     if (count_ == most) return false;
+    Arc arc;
+    // An arc comes nearer than a line does: what is one shall not become a line with corners.
+    if (count_ + 1 >= least_lines_of_arc && fits_arc(to, tolerance, arc)) {
+        arc_ = arc;
+        bent_ = true;
+    } else if (!bent_ && fits_line(to, tolerance)) {
+        bent_ = false;
+    } else {
+        return false;
+    }
+    ends_[count_++] = to;
+    return true;
+}
+
+bool LineMerger::fits_line(const Point& to, double tolerance) const noexcept {
     const Point way = minus(to, from_);
     const double square = dot(way, way);
     if (!(square > 0)) return false;
@@ -30,7 +51,43 @@ bool LineMerger::extend(const Point& to, double tolerance) noexcept {
         if (along < before || along > 1 || dot(off, off) > tolerance * tolerance) return false;
         before = along;
     }
-    ends_[count_++] = to;
+    return true;
+}
+
+/// Through the first point, the middle one and the last; in a plane of two axes of the machine.
+bool LineMerger::fits_arc(const Point& to, double tolerance, Arc& arc) const noexcept {
+    std::uint8_t normal = 3;
+    for (std::uint8_t n = 0; n < 3; ++n) {
+        bool flat = to[n] == from_[n];
+        for (std::size_t i = 0; flat && i < count_; ++i) flat = ends_[i][n] == from_[n];
+        if (flat) normal = n;
+    }
+    if (normal == 3) return false;
+    const std::size_t u = (normal + 1u) % 3, v = (normal + 2u) % 3;
+    const Point& middle = ends_[count_ / 2];
+    const double ax = middle[u] - from_[u], ay = middle[v] - from_[v], bx = to[u] - from_[u], by = to[v] - from_[v];
+    const double cross = ax * by - ay * bx, a2 = ax * ax + ay * ay, b2 = bx * bx + by * by;
+    // A sagitta of less than a tenth of the tolerance is a line.
+    if (std::fabs(cross) <= 0.2 * tolerance * std::sqrt(b2)) return false;
+    const double cx = (by * a2 - ay * b2) / (2 * cross), cy = (ax * b2 - bx * a2) / (2 * cross);
+    const double radius = std::hypot(cx, cy);
+    // Around the centre, point by point: the same sense, each chord within the tolerance of its arc.
+    double x = -cx, y = -cy, turned = 0;
+    for (std::size_t i = 0; i <= count_; ++i) {
+        const Point& p = i < count_ ? ends_[i] : to;
+        const double nx = p[u] - from_[u] - cx, ny = p[v] - from_[v] - cy;
+        const double step = std::atan2(x * ny - y * nx, x * nx + y * ny);
+        const double sagitta = radius * step * step / 8;
+        if (step * cross <= 0 || std::fabs(std::hypot(nx, ny) - radius) + sagitta > tolerance) return false;
+        turned += step;
+        x = nx, y = ny;
+    }
+    if (std::fabs(turned) > most_angle) return false;
+    arc.normal = normal;
+    arc.angle = turned;
+    arc.centre[u] = from_[u] + cx;
+    arc.centre[v] = from_[v] + cy;
+    arc.centre[normal] = from_[normal];
     return true;
 }
 

@@ -35,7 +35,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "axes//axis/motion_context.hpp"
+#include "axes/axis/motion_context.hpp"
 #include "axes/group/path_types.hpp"
 #include "core/alarm.hpp"
 #include "fb_library/block_type.hpp"

@@ -1,5 +1,6 @@
 // A program in G-code moves a group: MC_PathSelect, MC_MovePath. Every set-point is compared with the geometry of the program, worked out here by hand.
 
+#include "core/guard/allocation_guard.hpp"
 #include "tests/fb_library/gcode_path/path_rig.hpp"
 
 namespace taktwerk::fb {
@@ -241,6 +242,44 @@ TEST(GcodePath, ItBeginsAtALine) {
         EXPECT_LT(std::min(off_line(p, {0, 0, 0}, {20, 10, 0}), off_line(p, {20, 10, 0}, {20, 30, 0})), 1e-9);
     }
     EXPECT_LT(distance(rig.at(), {20, 30, 0}), 1e-9);
+}
+
+// The cycle's side takes no memory: pieces, requests, dwells, the end.
+TEST(GcodePath, NothingInTheCycleTakesMemory) {
+    PathRig rig(with_words);
+    ASSERT_TRUE(rig.prepare());
+    auto& plc = rig.plc.rig;
+    axes::GroupCommand path{.kind = axes::GroupCommandKind::path, .frame = mcMCS};
+    path.path = rig.select.PathData.path;
+    path.ticket = rig.select.PathData.ticket;
+    std::size_t taken = 0;
+    int asked = 0;
+    const auto guarded = [&](const axes::GroupCommand* command) {
+        plc.now += axes::test::GroupRig::cycle;
+        for (auto& one : plc.axes) one.update(plc.now);
+        NoAllocationScope none;
+        plc.groups.update(plc.now);
+        if (command != nullptr) {
+            EXPECT_EQ(plc.submit(*command).error, ErrorId::none);
+        }
+        if (plc.view().path.waits) {
+            ++asked;
+            EXPECT_EQ(plc.groups.acknowledge(rig.plc.group, plc.view().path.request_id, axes::Owner::program), ErrorId::none);
+        }
+        plc.groups.plan(plc.now, axes::test::GroupRig::cycle);
+        taken += none.used().total();
+        axes::plan_axes(plc.axes, plc.now, axes::test::GroupRig::cycle);
+        for (auto& one : plc.axes) one.encode(plc.now);
+    };
+    guarded(&path);
+    for (int i = 0; i < 5000 && plc.view().state != axes::GroupState::GroupStandby; ++i) {
+        plc.groups.service();
+        guarded(nullptr);
+    }
+    EXPECT_EQ(plc.view().state, axes::GroupState::GroupStandby);
+    EXPECT_NEAR(plc.axis(0).set_position, 30, 1e-9);
+    EXPECT_GE(asked, 4);
+    EXPECT_EQ(taken, 0u);
 }
 
 }  // namespace

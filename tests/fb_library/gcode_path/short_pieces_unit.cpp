@@ -33,7 +33,6 @@ Outcome draw(const std::string& text, std::size_t served_every) {
     rig.plc.rig.served_every = served_every;
     int cycles = 0, fast = 0, limited = 0;
     rig.extra = [&](const MotionContext&) {
-        if (std::getenv("DBG") && rig.plc.context.cycle % 100 == 0) fmt::print(stderr, "{} line {} at {} {} v {} lim {} req {}\n", rig.plc.context.cycle, rig.handshake.Line, rig.at()[0], rig.at()[1], rig.plc.rig.view().path_velocity, (int)rig.plc.rig.view().limiter, (int)rig.handshake.Request);
         if (!rig.move.Active) return;
         ++cycles;
         const auto& view = rig.plc.rig.view();
