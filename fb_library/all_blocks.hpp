@@ -6,9 +6,11 @@
 #include "fb_library/block_type.hpp"
 #include "fb_library/fieldbus/sdo.hpp"
 #include "fb_library/groups/group_administration.hpp"
+#include "fb_library/groups/group_homing_block.hpp"
 #include "fb_library/groups/group_jogging.hpp"
 #include "fb_library/groups/group_limits.hpp"
 #include "fb_library/groups/group_moves.hpp"
+#include "fb_library/groups/group_parameters.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
 #include "fb_library/groups/group_values.hpp"
@@ -96,7 +98,9 @@ using GroupBlocks =
               MC_GroupWriteDefaultDynamics, MC_GroupReadDefaultDynamics, MC_GroupStop, MC_GroupHalt, MC_GroupInterrupt, MC_GroupContinue,
               MC_GroupReadStatus, MC_GroupReadError, MC_GroupReset, MC_GroupReadSWLimits, MC_MoveLinearAbsolute, MC_MoveLinearRelative,
               MC_MoveCircularAbsolute, MC_MoveCircularRelative, MC_MoveDirectAbsolute, MC_MoveDirectRelative, MC_GroupWaitTime,
-              MC_GroupSetOverride, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics, MC_GroupReadJoggingDynamics>;
+              MC_GroupSetOverride, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics, MC_GroupReadJoggingDynamics, MC_GroupHome,
+              MC_GroupWriteSWLimits, MC_GroupReadParameter, MC_GroupWriteParameter, MC_GroupWriteReferenceDynamics,
+              MC_GroupReadReferenceDynamics>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 

@@ -27,6 +27,7 @@ enum class GroupCommandKind : std::uint8_t {
     stop,       ///< locks the group while it is held (release_stop)
     interrupt,  ///< the commands stay, and go on with resume
     resume,     ///< MC_GroupContinue
+    home,       ///< the members one after the other; target = the coordinates at their references
     disable,    ///< GroupDisabled once the group stands
 };
 [[nodiscard]] constexpr bool goes_a_way(GroupCommandKind kind) noexcept {
@@ -84,6 +85,15 @@ struct GroupCommand {
 };
 static_assert(std::is_trivially_copyable_v<GroupCommand>);
 
+/// MC_GroupWriteSWLimits, by place: all members or none. An infinite value leaves a limit as it is. u
+struct WriteSoftwareLimits {
+    JointVector high{}, low{};
+};
+/// MC_GroupWriteParameter, mcDynamicsMode: later commands say velocity, acceleration, ... in percent (0 to 100) of the reference dynamics.
+struct SetDynamicsMode {
+    bool percent = false;
+};
+
 // --- at once, no motion -----------------------------------------------------------------------------------------------------
 
 /// MC_AddAxisToGroup; `ident` from 1 to most_members.
@@ -104,6 +114,12 @@ struct WriteDynamics {
     enum class Which : std::uint8_t { default_dynamics, reference_dynamics } which = Which::default_dynamics;
     PathDynamics dynamics{};
 };
+/// What percents of dynamics are of, and whether commands say percents (mcDynamicsMode).
+struct ReferenceDynamics {
+    PathDynamics of{};
+    bool percent = false;
+    friend bool operator==(const ReferenceDynamics&, const ReferenceDynamics&) = default;
+};
 /// How a group is jogged: the tool's point, and each member by its place. 0 = not said.
 struct JoggingDynamics {
     PathDynamics path{};
@@ -122,7 +138,7 @@ struct HoldJog {
     double velocity = 1, acceleration = 1;  ///< of the jogging dynamics: 0 to 1; above 0 to 1
 };
 /// AddMember ... | MC_GroupSetOverride | ...
-using GroupSetting =
-    std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics, HoldJog>;
+using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics,
+                                  HoldJog, WriteSoftwareLimits, SetDynamicsMode>;
 
 }  // namespace taktwerk::axes

@@ -63,7 +63,8 @@ struct GroupView {
     CommandId last_id = 0;
 
     Override override_factors;
-    PathDynamics default_dynamics, reference_dynamics;
+    PathDynamics default_dynamics;
+    ReferenceDynamics reference_dynamics;
     JoggingDynamics jogging_dynamics;
 
     [[nodiscard]] constexpr bool has(std::size_t place) const noexcept { return place < most_members && members[place].valid(); }

@@ -12,7 +12,6 @@ struct NotOffered {
 
 // clang-format off
 inline constexpr std::array not_offered{
-    NotOffered{"MC_GroupHome", "not_supported: homing of members in order is not written yet; MC_Home of each axis in GroupStandby"},
     NotOffered{"MC_SetKinTransform", "not_supported: the kinematics is configured with the group"},
     NotOffered{"MC_SetCartesianTransform", "not_supported: there are no product frames yet"},
     NotOffered{"MC_SetCoordinateTransform", "not_supported: there are no product frames yet"},
@@ -23,11 +22,6 @@ inline constexpr std::array not_offered{
     NotOffered{"MC_ReadJointInfo", "not_supported: no group has a serial arm yet"},
     NotOffered{"MC_GroupSetPosition", "not_supported: MC_SetPosition of each axis in GroupStandby"},
     NotOffered{"MC_GroupReadActualAcceleration", "not_supported: nobody measures it; MC_GroupReadAcceleration gives the set value"},
-    NotOffered{"MC_GroupReadParameter", "not_supported: the meaning of mcTransitionReferencePoint is disputed among our sources, and mcPercentage is not written yet"},
-    NotOffered{"MC_GroupWriteParameter", "not_supported: as MC_GroupReadParameter"},
-    NotOffered{"MC_GroupWriteReferenceDynamics", "not_supported: there is no mcPercentage yet that would read it"},
-    NotOffered{"MC_GroupReadReferenceDynamics", "not_supported: there is no mcPercentage yet"},
-    NotOffered{"MC_GroupWriteSWLimits", "not_supported: MC_WriteParameter of each axis; writing all or none is not written yet"},
     NotOffered{"MC_PathSelect", "not_supported: stored paths come with the path planner"},
     NotOffered{"MC_MovePath", "not_supported: stored paths come with the path planner"},
     NotOffered{"MC_GroupReadRigidBodyDynamic", "not_supported: there is no dynamic model that would read it"},
@@ -41,8 +35,8 @@ inline constexpr std::array not_offered{
     NotOffered{"MC_GroupSelectPayload", "not_supported: there is no dynamic model that would read it"},
     NotOffered{"MC_GroupReadPayload", "not_supported: there is no dynamic model that would read it"},
     NotOffered{"MC_GroupTransformPosition", "not_supported: comes with the kinematics"},
-    NotOffered{"MC_SyncAxisToGroup", "not_supported: couplings to a path are not written yet"},
-    NotOffered{"MC_SyncGroupToAxis", "not_supported: couplings to a path are not written yet"},
+    NotOffered{"MC_SyncAxisToGroup", "not_supported: an axis cannot follow the length of a path yet; a group has no track that MC_GearIn could read"},
+    NotOffered{"MC_SyncGroupToAxis", "not_supported: there are no stored paths whose parameter a master could drive"},
     NotOffered{"MC_SetDynCoordTransform", "not_supported: moving frames are not written yet"},
     NotOffered{"MC_TrackConveyorBelt", "not_supported: moving frames are not written yet"},
     NotOffered{"MC_TrackRotaryTable", "not_supported: moving frames are not written yet"},
