@@ -101,7 +101,7 @@ protected:
         if constexpr (requires { block.Velocity; }) block.Velocity = 10;
         if constexpr (std::is_same_v<B, MC_Reset>) axes.axis().state = axes::AxisState::ErrorStop;
         if constexpr (IsJog<B>) block.Mode = mcJogContinuous;
-        if constexpr (requires { block.ParameterNumber; }) block.ParameterNumber = axes::enable_limit_positive;  // a BOOL
+        if constexpr (requires { block.ParameterNumber = axes::enable_limit_positive; }) block.ParameterNumber = axes::enable_limit_positive;  // a BOOL
         if constexpr (requires { block.Input; }) block.Input.axis = {0};
         if constexpr (requires { block.Output; }) block.Output.axis = {0};
         if constexpr (requires { block.Switches; }) {
