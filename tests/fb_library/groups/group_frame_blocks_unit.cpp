@@ -492,9 +492,8 @@ TEST(GroupArmBlocks, ThePositionOfTheGroupIsSetWithoutMotion) {
     plc.rig.powered[2] = false;
     plc.rig.drives[2]->offline = true;
     plc.run(5);
-    set.Execute = false;
-    set.Position.A.Axes = {0, 0, 0};
-    EXPECT_NE(plc.outcome(set), ErrorId::none);
+    MC_GroupSetPosition refused;
+    EXPECT_NE(plc.outcome(refused), ErrorId::none);
     EXPECT_NEAR(plc.rig.axis(0).actual_position, 20, 1e-3);
 }
 
