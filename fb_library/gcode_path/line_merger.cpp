@@ -29,7 +29,7 @@ bool LineMerger::extend(const Point& to, double tolerance) noexcept {
     if (count_ + 1 >= least_lines_of_arc && fits_arc(to, tolerance, arc)) {
         arc_ = arc;
         bent_ = true;
-    } else if (!bent_ && fits_line(to, tolerance)) {
+    } else if (fits_line(to, tolerance)) {
         bent_ = false;
     } else {
         return false;

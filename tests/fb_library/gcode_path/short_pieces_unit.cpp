@@ -48,17 +48,17 @@ Outcome draw(const std::string& text, std::size_t served_every) {
     return out;
 }
 
-// T-05, T-06, T-07. By hand: 100 mm at F3000 are 2 s, and ramps of 50 mm/s with 1000 mm/s2 and 10000 mm/s3 add 50/1000 + 1000/10000 s at most. The circle itself allows
-// sqrt(1000 * 15.9) = 126 mm/s.
+// T-05, T-06, T-07. By hand: 100 mm at F3000 are 2 s; 50 mm/s are reached with 10000 mm/s3 in 2 sqrt(50/10000) = 0.1414 s over half the way of the feed, as braking is: 2.1414 s,
+// and (2.1414 - 2 * 0.1414) / 2.1414 = 86.8 % of it at the feed. The circle itself allows sqrt(1000 * 15.9) = 126 mm/s.
 TEST(GcodePath, TenThousandPiecesKeepTheirFeed) {
     const auto out = draw(circle_of_chords("G64 P0.01"), 1);
-    EXPECT_GE(out.seconds, 2.0);
-    EXPECT_LE(out.seconds, 2.15 * 1.03);
+    EXPECT_GE(out.seconds, 2.1413);
+    EXPECT_LE(out.seconds, 2.1414 * 1.01);
     EXPECT_LE(out.worst, 0.01) << "never further from the program than P";
     RecordProperty("at_feed", fmt::format("{:.3f}", out.at_feed));
     RecordProperty("limited", fmt::format("{:.3f}", out.limited));
     fmt::print("{:.3f} s, at the feed {:.1f} %, off {:.6f} mm\n", out.seconds, 100 * out.at_feed, out.worst);
-    EXPECT_GT(out.at_feed, 0.9);
+    EXPECT_GT(out.at_feed, 0.86);
 }
 
 // The planner comes every 40 cycles only: the same corners, later.
