@@ -9,9 +9,11 @@
 #include "fb_library/groups/group_arm_blocks.hpp"
 #include "fb_library/groups/group_bodies.hpp"
 #include "fb_library/groups/group_frames.hpp"
+#include "fb_library/groups/group_homing_block.hpp"
 #include "fb_library/groups/group_jogging.hpp"
 #include "fb_library/groups/group_limits.hpp"
 #include "fb_library/groups/group_moves.hpp"
+#include "fb_library/groups/group_parameters.hpp"
 #include "fb_library/groups/group_paths.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
@@ -106,7 +108,8 @@ using GroupBlocks =
               MC_GroupSetPosition, MC_GroupWriteToolData, MC_GroupReadToolData, MC_GroupSelectTool, MC_GroupReadTool,
               MC_GroupWritePayloadData, MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
               MC_GroupReadRigidBodyDynamic, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics, MC_GroupReadJoggingDynamics,
-              MC_PathSelect, MC_MovePath>;
+              MC_PathSelect, MC_MovePath, MC_GroupHome, MC_GroupWriteSWLimits, MC_GroupReadParameter, MC_GroupWriteParameter,
+              MC_GroupWriteReferenceDynamics, MC_GroupReadReferenceDynamics>;
 /// Stored paths, beside the standard's blocks.
 using PathBlocks = BlockList<Path_Handshake>;
 

@@ -40,6 +40,7 @@ void AxisGroup::fire(GroupEvent event) noexcept {
 }
 
 void AxisGroup::abort_all() noexcept {
+    if (state_ == GroupState::GroupHoming) homing_.stop(members_);
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);
@@ -59,6 +60,7 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
     if (!next_state(state_, GroupEvent::error) || state_ == GroupState::GroupErrorStop) return;
     view_.error = error;
     view_.reset_error = ErrorId::none;
+    if (state_ == GroupState::GroupHoming) homing_.stop(members_);
     fire(GroupEvent::error);
     queue_.finish_active(Outcome::error, static_cast<ErrorId>(error));
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
@@ -129,7 +131,9 @@ void AxisGroup::watch_reset() noexcept {
 }
 
 void AxisGroup::plan(Instant, Duration period) noexcept {
-    if (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0) {
+    if (state_ == GroupState::GroupHoming) go_on_homing();
+    const bool member_stops = state_ == GroupState::GroupStopping && homing_.moves(members_);
+    if (!member_stops && (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0)) {
         if (run_.over() || !members_.led()) settle();
         if (members_.led()) {
             send_waiting();
@@ -138,6 +142,14 @@ void AxisGroup::plan(Instant, Duration period) noexcept {
     }
     publish();
     if (config_.kinematics) see_tool(view_, config_.kinematics.get(), moves_with_tool() ? run_.carried().tool : equipment_.tool_pose());
+}
+
+void AxisGroup::go_on_homing() noexcept {
+    const auto answer = homing_.step(members_);
+    if (!answer.over) return;
+    queue_.finish_active(answer.outcome, answer.error);
+    begun_ = false;
+    fire(GroupEvent::done);
 }
 
 /// The group stands: what comes next.

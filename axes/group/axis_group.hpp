@@ -17,6 +17,7 @@
 
 #include "axes/group/group_config.hpp"
 #include "axes/group/group_equipment.hpp"
+#include "axes/group/group_homing.hpp"
 #include "axes/group/group_jog.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_queue.hpp"
@@ -84,6 +85,7 @@ private:
     CommandId take_stop(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_interrupt(const GroupCommand& command) noexcept;
     Submitted take_resume(const GroupCommand& command, Owner owner) noexcept;
+    CommandId take_home(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_disable() noexcept;
     ErrorId change_members(const GroupSetting& setting) noexcept;
     ErrorId enable() noexcept;
@@ -101,6 +103,8 @@ private:
     [[nodiscard]] bool jogs() const noexcept { return queue_.active().command.kind == GroupCommandKind::jog; }
     /// False: nobody wants it any more, and it is over.
     [[nodiscard]] bool turn_jog() noexcept;
+    void go_on_homing() noexcept;
+    ErrorId set_limits(const WriteSoftwareLimits& limits, Owner owner) noexcept;
     void tend_jog(Duration period) noexcept;
     ErrorId set_jog(const GroupSetting& setting) noexcept;
     void go_on(Duration period) noexcept;
@@ -121,6 +125,7 @@ private:
     GroupQueue queue_;
     PathRun run_;
     GroupJog jog_;    // while jogs()
+    GroupHoming homing_;
     GroupView view_;  // and its settings: override, dynamics, error, reset
     GroupEquipment equipment_;
     JointVector hold_{};  // where the members stand without a run

@@ -30,6 +30,7 @@ enum class GroupCommandKind : std::uint8_t {
     stop,       ///< locks the group while it is held (release_stop)
     interrupt,  ///< the commands stay, and go on with resume
     resume,     ///< MC_GroupContinue
+    home,       ///< the members one after the other; target = the coordinates at their references
     disable,    ///< GroupDisabled once the group stands
     // no motion, but with a place between motions where `execution` asks for one
     set_frame,   ///< `frame` is at `target` from then on, seen from the world
@@ -105,6 +106,15 @@ struct GroupCommand {
 };
 static_assert(std::is_trivially_copyable_v<GroupCommand>);
 
+/// MC_GroupWriteSWLimits, by place: all members or none. An infinite value leaves a limit as it is. u
+struct WriteSoftwareLimits {
+    JointVector high{}, low{};
+};
+/// MC_GroupWriteParameter, mcDynamicsMode: later commands say velocity, acceleration, ... in percent (0 to 100) of the reference dynamics.
+struct SetDynamicsMode {
+    bool percent = false;
+};
+
 // --- at once, no motion -----------------------------------------------------------------------------------------------------
 
 /// MC_AddAxisToGroup; `ident` from 1 to most_members.
@@ -125,6 +135,12 @@ struct WriteDynamics {
     enum class Which : std::uint8_t { default_dynamics, reference_dynamics } which = Which::default_dynamics;
     PathDynamics dynamics{};
 };
+/// What percents of dynamics are of, and whether commands say percents (mcDynamicsMode).
+struct ReferenceDynamics {
+    PathDynamics of{};
+    bool percent = false;
+    friend bool operator==(const ReferenceDynamics&, const ReferenceDynamics&) = default;
+};
 /// How a group is jogged: the tool's point, and each member by its place. 0 = not said.
 struct JoggingDynamics {
     PathDynamics path{};
@@ -144,6 +160,6 @@ struct HoldJog {
 };
 /// AddMember ... | MC_GroupSetOverride | of jogging | of tools and loads
 using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics,
-                                  HoldJog, SelectTool, SelectPayload, WritePayload, WriteBodies>;
+                                  HoldJog, SelectTool, SelectPayload, WritePayload, WriteBodies, WriteSoftwareLimits, SetDynamicsMode>;
 
 }  // namespace taktwerk::axes

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "axes/group/axis_group.hpp"
+#include "axes/group/group_software_limits.hpp"
 #include "axes/group/motion_target.hpp"
 #include "axes/group/path_shelf.hpp"
 
@@ -21,6 +22,21 @@ ErrorId check_dynamics(const PathDynamics& dynamics) noexcept {
     if (!std::isfinite(dynamics.velocity)) return ErrorId::invalid_velocity;
     const bool finite = std::isfinite(dynamics.acceleration) && std::isfinite(dynamics.deceleration) && std::isfinite(dynamics.jerk);
     return finite ? ErrorId::none : ErrorId::invalid_dynamics;
+}
+
+/// Of percents of the reference dynamics u/s, u/s2, u/s3; 0 or less stays what it is.
+ErrorId in_units(PathDynamics& dynamics, const ReferenceDynamics& reference) noexcept {
+    if (!reference.percent) return ErrorId::none;
+    const auto scale = [](double& value, double whole) {
+        if (!(value > 0)) return true;
+        if (value > 100 || !(whole > 0)) return false;
+        value *= whole / 100;
+        return true;
+    };
+    if (!scale(dynamics.velocity, reference.of.velocity)) return ErrorId::invalid_velocity;
+    const bool rest = scale(dynamics.acceleration, reference.of.acceleration) && scale(dynamics.deceleration, reference.of.deceleration) &&
+                      scale(dynamics.jerk, reference.of.jerk);
+    return rest ? ErrorId::none : ErrorId::invalid_dynamics;
 }
 
 ErrorId refuse_transition(const GroupCommand& command) noexcept {
@@ -47,6 +63,8 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
     if (disabling_ != 0 || going_off_ != 0) return ErrorId::state_forbids;
     if (kind == GroupCommandKind::stop) return lock_ == 0 ? ErrorId::none : ErrorId::state_forbids;
     if (state_ == GroupStopping) return ErrorId::state_forbids;
+    if (state_ == GroupHoming) return ErrorId::state_forbids;
+    if (kind == GroupCommandKind::home) return state_ == GroupStandby ? ErrorId::none : ErrorId::state_forbids;
     if (jogs() && has_place_in_queue(kind) && waits(command)) return ErrorId::state_forbids;  // G-090
     if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
     if (kind == GroupCommandKind::resume) return interrupted_ ? ErrorId::none : ErrorId::nothing_interrupted;
@@ -94,6 +112,10 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     if (const auto error = check_dynamics(command.dynamics); error != ErrorId::none) return error;
     if (command.buffer_mode > mcBlendingHigh) return ErrorId::buffer_mode_not_supported;
     if (command.kind == GroupCommandKind::wait && command.duration < Duration{}) return ErrorId::invalid_parameter;
+    if (command.kind == GroupCommandKind::home) {
+        if (command.buffer_mode > mcBuffered) return ErrorId::buffer_mode_not_supported;
+        return command.frame == mcACS ? ErrorId::none : ErrorId::not_supported;
+    }
     if (command.kind == GroupCommandKind::jog) {
         const auto error = refuse_frame(command, config_.kinematics.get(), members_);
         return error != ErrorId::none ? error : GroupJog::refuse(command, view_.jogging_dynamics, members_);
@@ -103,13 +125,16 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     return has_place_in_queue(command.kind) && waits(command) && queue_.full() ? ErrorId::queue_full : ErrorId::none;
 }
 
-Submitted AxisGroup::submit(const GroupCommand& command, Owner owner) noexcept {
+Submitted AxisGroup::submit(const GroupCommand& wanted, Owner owner) noexcept {
+    GroupCommand command = wanted;
+    if (const auto error = in_units(command.dynamics, view_.reference_dynamics); error != ErrorId::none) return {0, error};
     if (const auto error = refuse(command, owner); error != ErrorId::none) return {0, error};
     Submitted answer;
     switch (command.kind) {
         case GroupCommandKind::stop: answer.id = take_stop(command, owner); break;
         case GroupCommandKind::interrupt: answer.id = take_interrupt(command); break;
         case GroupCommandKind::resume: answer = take_resume(command, owner); break;
+        case GroupCommandKind::home: answer.id = take_home(command, owner); break;
         case GroupCommandKind::disable: answer.id = take_disable(); break;
         case GroupCommandKind::set_frame:
         case GroupCommandKind::write_tool: answer = take_setting(command, owner); break;
@@ -207,6 +232,18 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
     return {id, ErrorId::none};
 }
 
+CommandId AxisGroup::take_home(const GroupCommand& command, Owner owner) noexcept {
+    abort_all();
+    run_.clear();
+    const auto id = queue_.next_id();
+    queue_.activate({id, owner, command});
+    begun_ = true;
+    elapsed_ = {};
+    homing_.begin(command, owner);
+    fire(GroupEvent::home);
+    return id;
+}
+
 CommandId AxisGroup::take_disable() noexcept {
     abort_all();
     lock_ = 0;
@@ -237,6 +274,7 @@ void AxisGroup::let_go() noexcept {
     } else {
         abort_all();
         if (state_ == GroupState::GroupStopping) fire(GroupEvent::stopped);
+        if (state_ == GroupState::GroupHoming) fire(GroupEvent::done);
     }
     publish();
 }
@@ -295,6 +333,12 @@ ErrorId AxisGroup::set_jog(const GroupSetting& setting) noexcept {
     return write_jogging(std::get<WriteJoggingDynamics>(setting).dynamics, view_.jogging_dynamics);
 }
 
+ErrorId AxisGroup::set_limits(const WriteSoftwareLimits& limits, Owner owner) noexcept {
+    // A way under way was looked at with the limits before.
+    if (members_.led() || state_ == GroupState::GroupHoming || state_ == GroupState::GroupStopping) return ErrorId::state_forbids;
+    return write_limits(limits, members_, owner);
+}
+
 // --- settings -------------------------------------------------------------------------------------------------------------------
 
 ErrorId AxisGroup::change_members(const GroupSetting& setting) noexcept {
@@ -331,7 +375,7 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         run_.override_with(this->factors());
     } else if (const auto* written = std::get_if<WriteDynamics>(&setting)) {
         if (error = check_dynamics(written->dynamics); error != ErrorId::none) return error;
-        auto& kept = written->which == WriteDynamics::Which::default_dynamics ? view_.default_dynamics : view_.reference_dynamics;
+        auto& kept = written->which == WriteDynamics::Which::default_dynamics ? view_.default_dynamics : view_.reference_dynamics.of;
         const auto put = [](double& to, double value) {
             if (value > 0) to = value;
         };
@@ -339,6 +383,10 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         put(kept.acceleration, written->dynamics.acceleration);
         put(kept.deceleration, written->dynamics.deceleration);
         put(kept.jerk, written->dynamics.jerk);
+    } else if (const auto* limits = std::get_if<WriteSoftwareLimits>(&setting)) {
+        error = set_limits(*limits, owner);
+    } else if (const auto* mode = std::get_if<SetDynamicsMode>(&setting)) {
+        view_.reference_dynamics.percent = mode->percent;
     } else if (std::holds_alternative<HoldJog>(setting) || std::holds_alternative<WriteJoggingDynamics>(setting)) {
         error = set_jog(setting);
     } else if (setting.index() >= GroupSetting{SelectTool{}}.index()) {

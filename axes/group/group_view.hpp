@@ -67,7 +67,8 @@ struct GroupView {
 
     Override override_factors;
     double operators_override = 1;  ///< 0 to 1, beside it, whoever moves the group: the smallest of its own and its members'
-    PathDynamics default_dynamics, reference_dynamics;
+    PathDynamics default_dynamics;
+    ReferenceDynamics reference_dynamics;
     JoggingDynamics jogging_dynamics;
 
     [[nodiscard]] constexpr bool has(std::size_t place) const noexcept { return place < most_members && members[place].valid(); }

@@ -10,7 +10,7 @@ std::string_view name(PathLimiter limiter) noexcept {
 }
 
 std::string_view name(GroupCommandKind kind) noexcept {
-    constexpr std::array<std::string_view, 19> names{
+    constexpr std::array<std::string_view, 20> names{
         "none",
         "MC_MoveLinearAbsolute",
         "MC_MoveLinearRelative",
@@ -25,6 +25,7 @@ std::string_view name(GroupCommandKind kind) noexcept {
         "MC_GroupStop",
         "MC_GroupInterrupt",
         "MC_GroupContinue",
+        "MC_GroupHome",
         "MC_GroupDisable",
         "MC_SetCoordinateTransform",
         "MC_GroupWriteToolData",

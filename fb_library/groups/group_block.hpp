@@ -2,7 +2,7 @@
 // The thin bases of group blocks, over the lifecycle of all blocks.
 //
 //   GroupCommandBlock  a command of the group. Says `GroupCommand command() const`; `completion` where it is not plain Done.
-//   GroupSettingBlock  something at once. Says `GroupSetting setting() const`; Done in the next call.
+//   GroupSettingBlock  something at once. Says `GroupSetting setting() const`, perhaps `ErrorId refuse() const` of its pins; Done in the next call.
 //   GroupReadBlock     while Enable is TRUE. Says, public, `Reading read_group(const GroupView&)` (or with the context in front) and `clear()`.
 
 #include <cstdint>
@@ -55,6 +55,8 @@ protected:
     void start(const MotionContext& ctx) noexcept {
         const Block& block = static_cast<const Block&>(*this);
         if (view_of(ctx, block.AxesGroup) == nullptr) return this->core_.refuse(ErrorId::invalid_group);
+        if constexpr (requires { block.refuse(); })
+            if (const ErrorId error = block.refuse(); error != ErrorId::none) return this->core_.refuse(error);
         const auto error = ctx.groups->set(block.AxesGroup, block.setting(), ctx.owner);
         if (error != ErrorId::none) return this->core_.refuse(error);
         this->core_.start({});

@@ -1,6 +1,6 @@
 #pragma once
 // How fast a group moves where a command does not say it, and how far its members may go: MC_GroupWriteDefaultDynamics, MC_GroupReadDefaultDynamics,
-// MC_GroupReadSWLimits. PLCopen Part 4 v2.0. Real-time safe.
+// MC_GroupReadSWLimits, MC_GroupWriteSWLimits. PLCopen Part 4 v2.0. Real-time safe.
 
 #include <string_view>
 
@@ -81,6 +81,35 @@ struct MC_GroupReadSWLimits : GroupReadBlock<MC_GroupReadSWLimits> {
         return Reading::valid();
     }
     void clear() noexcept { LimitValues = {}; }
+};
+
+/// At rest. All members or none; every path after it is looked at along its whole length with them. They hold for homed axes, and are the axes'
+/// parameters.
+struct MC_GroupWriteSWLimits : GroupSettingBlock<MC_GroupWriteSWLimits> {
+    GroupRef AxesGroup{};
+    bool Execute = false;
+    MC_GROUP_SWLIMITS LimitValues{};
+    MC_ExecutionMode ExecutionMode = mcImmediately;
+
+    bool Done = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+
+    static constexpr std::string_view summary = "Writes the software limits of all members, or of none.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(),
+                         in<&Self::LimitValues>("", "u, of each member by IdentInGroup; infinite = stays as it is"),
+                         in<&Self::ExecutionMode>("", "mcImmediately; no other yet"), out<&Self::Done>("", "all of them hold"),
+                         grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
+    }
+    [[nodiscard]] ErrorId refuse() const noexcept { return ExecutionMode == mcImmediately ? ErrorId::none : ErrorId::not_supported; }
+    [[nodiscard]] axes::GroupSetting setting() const noexcept {
+        axes::WriteSoftwareLimits limits;
+        for (std::size_t i = 0; i < axes::most_members; ++i) {
+            limits.high[i] = LimitValues.Axes[i].SWLimitPos;
+            limits.low[i] = LimitValues.Axes[i].SWLimitNeg;
+        }
+        return limits;
+    }
 };
 
 }  // namespace taktwerk::fb
