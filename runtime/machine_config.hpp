@@ -97,7 +97,7 @@ struct TaskConfig {
     std::uint16_t divisor = 1;  ///< 1 = base task, inline in the cycle
     OverrunReaction overrun = OverrunReaction::stop_program;
     std::uint16_t overruns_allowed = 3;  ///< in a row
-    /// How long a run of a slower task may take, from its release on; its program is stopped then. Nothing: as TaskWatch has it; 0: no limit.
+    /// How long a run of a slower task may take, from its release on; its program is stopped then. Nothing: as TaskWatch has it; 0: no limit while its program runs.
     std::optional<Duration> watchdog{};
     std::uint16_t watchdog_sensitivity = 1;  ///< so many runs in a row, or one that takes so many times as long
     std::optional<int> priority{};           ///< SCHED_FIFO, of a slower task's thread; 0: an ordinary thread. Nothing: by its period

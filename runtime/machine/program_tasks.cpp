@@ -105,6 +105,7 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
 void ProgramRunner::judge(SlowPlace& slow) noexcept {
     const auto p = slow.task->program();
     auto& program = programs_[p];
+    if (program.state == ProgramState::stopped && !slow.finished) slow.watch.left_behind();
     const auto verdict = slow.watch.verdict(body_.cycles);
     if (verdict == TaskVerdict::in_time) return;
     if (!program.running()) {

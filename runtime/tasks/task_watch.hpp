@@ -26,8 +26,12 @@ public:
 
     /// How long one run may take; 0: no limit.
     [[nodiscard]] static Duration watchdog_of(const TaskConfig& task, const MachineConfig& machine) noexcept {
+        return task.watchdog.value_or(default_of(task, machine));
+    }
+    /// How long a run of a task without a limit (`watchdog: 0 ms`) may go on once a person has stopped its program.
+    [[nodiscard]] static Duration default_of(const TaskConfig& task, const MachineConfig& machine) noexcept {
         const auto strict = std::max(shortest_default, machine.cycle * static_cast<Duration::rep>(task.divisor) * periods_by_default);
-        return task.watchdog.value_or(machine.simulation.supervision == Supervision::relaxed ? strict * relaxed_watchdog_factor : strict);
+        return machine.simulation.supervision == Supervision::relaxed ? strict * relaxed_watchdog_factor : strict;
     }
     /// Releases that it may miss in a row.
     [[nodiscard]] static std::uint32_t overruns_allowed(const TaskConfig& task, const MachineConfig& machine) noexcept {
@@ -35,7 +39,8 @@ public:
     }
 
     TaskWatch(const TaskConfig& task, const MachineConfig& machine) noexcept
-        : watchdog_(static_cast<std::uint64_t>((watchdog_of(task, machine) + machine.cycle - Duration{1}) / machine.cycle)),
+        : watchdog_(cycles_in(watchdog_of(task, machine), machine)),
+          behind_stop_(cycles_in(default_of(task, machine), machine)),
           sensitivity_(std::max<std::uint16_t>(1, task.watchdog_sensitivity)),
           overruns_allowed_(overruns_allowed(task, machine)),
           late_counts_(task.overrun == OverrunReaction::stop_program) {}
@@ -44,7 +49,10 @@ public:
     void begin(std::uint64_t cycle) noexcept {
         released_ = cycle;
         at_work_ = true;
+        left_ = 0;
     }
+    /// In each cycle in which it is still at work and its program is stopped.
+    void left_behind() noexcept { ++left_; }
     /// It was due in this cycle and had not ended.
     void missed() noexcept { ++overruns_; }
     /// It was due, and had ended.
@@ -65,7 +73,8 @@ public:
     [[nodiscard]] TaskVerdict verdict(std::uint64_t cycle) const noexcept {
         const bool too_often = bites_ >= sensitivity_;
         const bool much_too_long = at_work_ && watchdog_ > 0 && cycle - released_ > watchdog_ * sensitivity_;
-        if (too_often || much_too_long) return TaskVerdict::watchdog;
+        const bool never_back = at_work_ && watchdog_ == 0 && left_ > behind_stop_;
+        if (too_often || much_too_long || never_back) return TaskVerdict::watchdog;
         return late_counts_ && overruns_ > overruns_allowed_ ? TaskVerdict::late : TaskVerdict::in_time;
     }
     /// Releases that it has missed in a row.
@@ -73,18 +82,22 @@ public:
     [[nodiscard]] std::uint32_t overruns_allowed() const noexcept { return overruns_allowed_; }
     /// So many cycles the run takes that is at work, else the last one.
     [[nodiscard]] std::uint64_t cycles_taken(std::uint64_t cycle) const noexcept { return at_work_ ? cycle - released_ : last_; }
-    /// In cycles; 0: none.
-    [[nodiscard]] std::uint64_t watchdog() const noexcept { return watchdog_; }
+    /// What it was judged by, in cycles: of a run; without a limit: from the stop of its program on.
+    [[nodiscard]] std::uint64_t watchdog() const noexcept { return watchdog_ > 0 ? watchdog_ : behind_stop_; }
 
 private:
-    std::uint64_t watchdog_;
+    [[nodiscard]] static std::uint64_t cycles_in(Duration time, const MachineConfig& machine) noexcept {
+        return static_cast<std::uint64_t>((time + machine.cycle - Duration{1}) / machine.cycle);
+    }
+
+    std::uint64_t watchdog_, behind_stop_;
     std::uint32_t sensitivity_;
     std::uint32_t overruns_allowed_;
     bool late_counts_;
     bool at_work_ = false;
     std::uint32_t overruns_ = 0;
     std::uint32_t bites_ = 0;
-    std::uint64_t released_ = 0, last_ = 0;
+    std::uint64_t released_ = 0, last_ = 0, left_ = 0;
 };
 
 }  // namespace taktwerk::runtime

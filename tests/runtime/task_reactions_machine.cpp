@@ -293,6 +293,38 @@ TEST_F(TaskReactions, OfAProgramThatAPersonHasStoppedTheTaskThatHangsIsNamed) {
     EXPECT_TRUE(m().until([&] { return m().axis(0).set_velocity == 60; }, 3s)) << m().alarms();
 }
 
+// Without a watchdog it may compute as long as it likes while its program runs. Ten periods, at least 250 ms, after a person has stopped that, it is named
+// all the same, with the time since its release and what it was given.
+TEST_F(TaskReactions, WithoutAWatchdogTheTaskThatHangsIsNamedSomeTimeAfterTheStop) {
+    panel.watchdog = Duration{};
+    panel.overrun = OverrunReaction::count;
+    begin();
+    for (int i = 0; i < 1000; ++i) cycle();
+    EXPECT_EQ(m().state().alarm_count, 0u) << "the control: nobody has stopped it: " << m().alarms();
+    OperatorCommand stop;
+    stop.action = OperatorAction::program_stop;
+    stop.index = 0;
+    EXPECT_TRUE(m().machine->submit(stop));
+    cycle();
+    ASSERT_EQ(m().state().programs[0], ProgramState::stopped);
+    for (int i = 0; i < 240; ++i) cycle();
+    EXPECT_EQ(m().state().alarm_count, 0u) << "the control: its time is not over: " << m().alarms();
+    for (int i = 0; i < 20; ++i) cycle();
+    EXPECT_EQ(alarm_ids(), std::vector{id(MachineAlarm::task_watchdog)}) << m().alarms();
+    EXPECT_EQ(m().state().alarms[0].fact.b, 250);
+    EXPECT_GT(m().state().alarms[0].fact.a, 1240);
+    EXPECT_EQ(m().state().programs[0], ProgramState::stopped);
+
+    m().run(10ms);  // it comes back
+    EXPECT_EQ(m().command(OperatorAction::reset).answer, Answer::accepted);
+    m().run(10ms);
+    EXPECT_EQ(m().state().alarm_count, 0u) << m().alarms();
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::accepted);
+    EXPECT_TRUE(m().until([&] { return m().axis(0).set_velocity == 60; }, 3s)) << m().alarms();
+    for (int i = 0; i < 400; ++i) cycle();
+    EXPECT_EQ(m().state().alarm_count, 0u) << "its time begins with a stop: " << m().alarms();
+}
+
 /// Notes what its tasks are told of themselves.
 class Asks final : public Program {
 public:
