@@ -32,8 +32,9 @@ public:
     [[nodiscard]] const Arc* arc() const noexcept { return bent_ ? &arc_ : nullptr; }
 
 private:
-    [[nodiscard]] bool fits_line(const Point& to, double tolerance) const noexcept;
-    [[nodiscard]] bool fits_arc(const Point& to, double tolerance, Arc& arc) const noexcept;
+    // How far they are off it; more than any tolerance: it is none of that kind.
+    [[nodiscard]] double off_line(const Point& to) const noexcept;
+    [[nodiscard]] double off_arc(const Point& to, double tolerance, Arc& arc) const noexcept;
 
     Point from_{};
     std::array<Point, most> ends_{};

@@ -37,9 +37,9 @@ struct GroupPlc {
         for (int i = 0; i < most && !condition(); ++i) scan();
         return condition();
     }
-    /// Calls a block with a rising edge until it is finished.
+    /// Calls a block with a rising edge until it is finished; with what, its next call does not say any more.
     template <class Block>
-    void carry_out(Block& block, int most = 20) {
+    ErrorId carry_out(Block& block, int most = 20) {
         const auto before = program;
         block.AxesGroup = group;
         block.Execute = true;
@@ -48,9 +48,11 @@ struct GroupPlc {
             block(ctx);
         };
         EXPECT_TRUE(until([&] { return block.Done || block.Error; }, most));
+        const ErrorId error = block.ErrorID;
         block.Execute = false;
         scan();
         program = before;
+        return error;
     }
 
     static constexpr GroupRef group{0};

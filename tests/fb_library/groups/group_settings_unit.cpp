@@ -66,23 +66,19 @@ TEST(GroupSettings, LimitsAreWrittenAndRead) {
     };
     MC_GroupWriteSWLimits write;
     write.LimitValues = values();  // infinite: none
-    plc.carry_out(write);
-    EXPECT_EQ(write.ErrorID, ErrorId::none);
+    EXPECT_EQ(plc.carry_out(write), ErrorId::none);
     EXPECT_EQ(values().Axes[0].SWLimitPos, std::numeric_limits<double>::infinity());
     write.LimitValues.Axes[0] = {50, -5};
     write.LimitValues.Axes[1] = {60, -6};
-    plc.carry_out(write);
-    EXPECT_TRUE(write.ErrorID == ErrorId::none);
+    EXPECT_EQ(plc.carry_out(write), ErrorId::none);
     EXPECT_EQ(values().Axes[1].SWLimitPos, 60);
     EXPECT_EQ(values().Axes[0].SWLimitNeg, -5);
     write.LimitValues.Axes[1] = {-1, 1};
     write.LimitValues.Axes[0] = {70, -7};
-    plc.carry_out(write);
-    EXPECT_EQ(write.ErrorID, ErrorId::invalid_parameter);
+    EXPECT_EQ(plc.carry_out(write), ErrorId::invalid_parameter);
     EXPECT_EQ(values().Axes[0].SWLimitPos, 50) << "none of them";
     write.ExecutionMode = mcQueued;
-    plc.carry_out(write);
-    EXPECT_EQ(write.ErrorID, ErrorId::not_supported);
+    EXPECT_EQ(plc.carry_out(write), ErrorId::not_supported);
 }
 
 // G-030: percents of the reference dynamics.
@@ -93,8 +89,7 @@ TEST(GroupSettings, DynamicsInPercent) {
     plc.carry_out(reference);
     MC_GroupWriteParameter mode;
     mode.Value = 1;
-    plc.carry_out(mode);
-    EXPECT_EQ(mode.ErrorID, ErrorId::none);
+    EXPECT_EQ(plc.carry_out(mode), ErrorId::none);
     EXPECT_FALSE(mode.CommandAccepted);
     EXPECT_EQ(mode.CommandID.id, 0u);
     MC_GroupReadParameter read;
@@ -110,22 +105,18 @@ TEST(GroupSettings, DynamicsInPercent) {
         known(ctx);
         fastest = std::max(fastest, plc.rig.view().path_velocity);
     };
-    plc.carry_out(move, 8000);
-    EXPECT_EQ(move.ErrorID, ErrorId::none);
+    EXPECT_EQ(plc.carry_out(move, 8000), ErrorId::none);
     EXPECT_EQ(read.Value, 1);
     EXPECT_EQ(known.Velocity, 40);
     EXPECT_EQ(known.Jerk, 0);
     EXPECT_NEAR(fastest, 10, 0.02) << "a quarter of 40";
     move.Velocity = 120;
-    plc.carry_out(move);
-    EXPECT_EQ(move.ErrorID, ErrorId::invalid_velocity);
+    EXPECT_EQ(plc.carry_out(move), ErrorId::invalid_velocity);
     mode.ParameterNumber = mcTransitionReferencePoint;
-    plc.carry_out(mode);
-    EXPECT_EQ(mode.ErrorID, ErrorId::not_supported);
+    EXPECT_EQ(plc.carry_out(mode), ErrorId::not_supported);
     mode.ParameterNumber = mcDynamicsMode;
     mode.Value = 2;
-    plc.carry_out(mode);
-    EXPECT_EQ(mode.ErrorID, ErrorId::invalid_parameter);
+    EXPECT_EQ(plc.carry_out(mode), ErrorId::invalid_parameter);
     read.ParameterNumber = static_cast<MC_GroupParameter>(9);
     plc.run(2);
     EXPECT_EQ(read.ErrorID, ErrorId::unknown_parameter);
