@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/group/group_members.hpp"
+
 namespace taktwerk::axes {
 namespace {
 

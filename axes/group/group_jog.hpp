@@ -4,10 +4,11 @@
 
 #include <optional>
 
-#include "axes/group/group_members.hpp"
 #include "axes/group/group_view.hpp"
 
 namespace taktwerk::axes {
+
+class GroupMembers;
 
 class GroupJog {
 public:

@@ -16,10 +16,12 @@ class Engraver final : public Program {
     Input<bool> spindle_turns_;
     Output<bool> spindle_, air_;
 
-    MC_GroupPower power_;
-    std::array<MC_Home, count> homes_;
-    MC_GroupEnable enable_;
-    MC_GroupReset reset_;
+    struct {
+        MC_GroupPower power;
+        std::array<MC_Home, count> homes;
+        MC_GroupEnable enable;
+        MC_GroupReset reset;
+    } up_;  // what leads to GroupStandby
     MC_GroupReadStatus status_;
     MC_GroupSetOverride override_;
     MC_GroupInterrupt hold_;
@@ -58,29 +60,29 @@ public:
     }
 
     void start() override {
-        enable_.Execute = reset_.Execute = select_.Execute = move_.Execute = hold_.Execute = continue_.Execute = false;
-        for (auto& home : homes_) home.Execute = false;
+        up_.enable.Execute = up_.reset.Execute = select_.Execute = move_.Execute = hold_.Execute = continue_.Execute = false;
+        for (auto& home : up_.homes) home.Execute = false;
         spindle_on_ = air_on_ = false;
     }
 
     void scan(TaskContext& ctx) {
-        for (auto* group : {&power_.AxesGroup, &enable_.AxesGroup, &reset_.AxesGroup, &status_.AxesGroup, &override_.AxesGroup,
+        for (auto* group : {&up_.power.AxesGroup, &up_.enable.AxesGroup, &up_.reset.AxesGroup, &status_.AxesGroup, &override_.AxesGroup,
                             &hold_.AxesGroup, &continue_.AxesGroup, &select_.AxesGroup, &move_.AxesGroup, &asked_.AxesGroup})
             *group = portal_;
-        power_.Enable = status_.Enable = override_.Enable = asked_.Enable = true;
-        power_(ctx);
+        up_.power.Enable = status_.Enable = override_.Enable = asked_.Enable = true;
+        up_.power(ctx);
         bool homed = true;
         for (std::size_t i = 0; i < count; ++i) {
-            homes_[i].Axis = axes_[i];
-            homes_[i].Execute = power_.Status && !ctx.view(axes_[i])->homed;
-            homes_[i](ctx);
-            homed = homed && ctx.view(axes_[i])->homed && !homes_[i].Busy;
+            up_.homes[i].Axis = axes_[i];
+            up_.homes[i].Execute = up_.power.Status && !ctx.view(axes_[i])->homed;
+            up_.homes[i](ctx);
+            homed = homed && ctx.view(axes_[i])->homed && !up_.homes[i].Busy;
         }
-        enable_.Execute = power_.Status && homed;
-        enable_(ctx);
+        up_.enable.Execute = up_.power.Status && homed;
+        up_.enable(ctx);
         status_(ctx);
-        reset_.Execute = status_.GroupErrorStop && power_.Status;
-        reset_(ctx);
+        up_.reset.Execute = status_.GroupErrorStop && up_.power.Status;
+        up_.reset(ctx);
         override_.VelFactor = feed_ / 100;
         override_(ctx);
         engrave(ctx);
@@ -99,7 +101,7 @@ private:
     bool spindle_on_ = false, air_on_ = false, hold_was_ = false;
 
     void engrave(TaskContext& ctx) {
-        const bool stands = status_.GroupStandby && power_.Status;
+        const bool stands = status_.GroupStandby && up_.power.Status;
         select_.PathDescription = {plate_, {.single_block = one_by_one_}};
         if (stands && engraves_ && !select_.Execute) select_.Execute = true;
         select_(ctx);
