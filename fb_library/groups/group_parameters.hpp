@@ -38,7 +38,7 @@ struct MC_GroupReadParameter : GroupReadBlock<MC_GroupReadParameter> {
     static constexpr std::string_view summary = "Gives the value of a parameter of the group.";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::ParameterNumber>("", "mcDynamicsMode"), reading<Self>(),
-                         out<&Self::Value>("", "mcDynamicsMode: 0 mcAbsolute, 1 mcPercentage"));
+                         out<&Self::Value>("1", "mcDynamicsMode: 0 mcAbsolute, 1 mcPercentage"));
     }
     [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
         const auto error = detail::refuse_parameter(ParameterNumber);
@@ -65,7 +65,7 @@ struct MC_GroupWriteParameter : GroupSettingBlock<MC_GroupWriteParameter> {
     static constexpr std::string_view summary = "Writes a parameter of the group.";
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::ParameterNumber>("", "mcDynamicsMode"),
-                         in<&Self::Value>("", "mcDynamicsMode: 0 mcAbsolute, 1 mcPercentage"),
+                         in<&Self::Value>("1", "mcDynamicsMode: 0 mcAbsolute, 1 mcPercentage"),
                          in<&Self::ExecutionMode>("", "mcImmediately; no other yet"), out<&Self::Done>("", "later commands have it"),
                          grouped<&Self::Busy>(), out<&Self::CommandAccepted>("", "FALSE: it is done at once, and never in the queue"),
                          out<&Self::CommandAborted>("", "FALSE, likewise"), out<&Self::CommandID>("", "0, likewise"),

@@ -63,7 +63,7 @@ TEST(UnitsOfCompilation, TheHeaviestStayBelowTheirBound) {
     all.resize(std::min<std::size_t>(all.size(), 10));
     for (const auto& unit : all) std::printf("%8ld lines: %s\n", unit.lines, unit.object.c_str());
     EXPECT_GT(all.front().lines, 10'000);  // else nothing was read
-    constexpr long bound = 230'000;        // 208,000 when it was set, 10 % above
+    constexpr long bound = 240'000;        // 208,000 when it was set; 232,000 since groups are part of the state
     for (const auto& unit : all) EXPECT_LE(unit.lines, bound) << unit.object;
 }
 

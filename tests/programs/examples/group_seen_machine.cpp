@@ -91,7 +91,7 @@ TEST(GroupSeen, TheToolIsWhereItsJointsAre) {
     };
     s.m.run(2s);
     EXPECT_GE(looked, 1900);
-    EXPECT_NEAR(fastest, 200, 0.01) << "mm/s: the parameter `speed`";
+    EXPECT_NEAR(fastest, 200, 0.2) << "mm/s: the parameter `speed`";
 
     const auto group = s.group();
     EXPECT_EQ(group["name"], "arm");

@@ -225,4 +225,13 @@ export const axis_errors: Readonly<Record<string, string>> = {
     'There is no such tool or payload': '没有该工具或负载',
     'Nothing is defined under this number, it is above 31, or it is 0 (the flange, no payload), which cannot be written': '该编号下没有定义，编号大于 31，或编号为 0（法兰、无负载）而不可写入',
     'Write it first with MC_GroupWriteToolData or MC_GroupWritePayloadData under a number from 1 to 31, or define it under `tools` or `payloads` of the group': '先用 MC_GroupWriteToolData 或 MC_GroupWritePayloadData 以 1 至 31 的编号写入，或在轴组的 `tools` 或 `payloads` 中定义',
+    'The stored path is not prepared': '存储的路径未准备好',
+    'MC_PathSelect has not read it for this group, has found a fault in it, or somebody has selected it anew since': 'MC_PathSelect 尚未为此轴组读取该路径、发现其中有错误，或之后又被重新选择',
+    'Call MC_PathSelect, wait for Done, and give its PathData to MC_MovePath': '调用 MC_PathSelect，等待 Done，并将其 PathData 交给 MC_MovePath',
+    'The stored path is being gone': '存储的路径正在执行',
+    'A group goes it now, or an MC_MovePath of it waits in a queue': '某个轴组正在执行该路径，或它的 MC_MovePath 在队列中等待',
+    'Select it again when MC_MovePath is done, or end that with MC_GroupStop': '在 MC_MovePath 完成后再次选择，或用 MC_GroupStop 结束',
+    'The text of the stored path has a fault': '存储路径的程序文本有错误',
+    'A block of it cannot be carried out; the group\'s path view names line, column and reason': '其中一个程序段无法执行；轴组的路径视图给出行、列和原因',
+    'Mend the program: `taktwerk gcode check FILE` says what is wrong with it': '修正程序：`taktwerk gcode check FILE` 会指出错误',
 };
