@@ -88,7 +88,7 @@ using ExecuteBlocks = Filter<HasExecute, AllBlocks>::type;  // without MC_Jog, w
 using EnableBlocks = Filter<HasEnable, AllBlocks>::type;
 using ContinuousUpdateBlocks = Filter<HasContinuousUpdate, AllBlocks>::type;
 using InTargetBlocks = Filter<HasInTarget, AllBlocks>::type;
-using SettingBlocks = Filter<IsQueuedSetting, AllBlocks>::type;
+using SettingBlocks = Filter<IsQueuedSetting, decltype(detail::joined(MotionBlocks{}, HomingBlocks{}))>::type;  // of an axis
 
 // --- driving any of them -------------------------------------------------------------------------------------------------
 
@@ -101,7 +101,8 @@ protected:
         if constexpr (requires { block.Velocity; }) block.Velocity = 10;
         if constexpr (std::is_same_v<B, MC_Reset>) axes.axis().state = axes::AxisState::ErrorStop;
         if constexpr (IsJog<B>) block.Mode = mcJogContinuous;
-        if constexpr (requires { block.ParameterNumber = axes::enable_limit_positive; }) block.ParameterNumber = axes::enable_limit_positive;  // a BOOL
+        if constexpr (requires { block.ParameterNumber = axes::enable_limit_positive; })
+            block.ParameterNumber = axes::enable_limit_positive;  // a BOOL
         if constexpr (requires { block.Input; }) block.Input.axis = {0};
         if constexpr (requires { block.Output; }) block.Output.axis = {0};
         if constexpr (requires { block.Switches; }) {
