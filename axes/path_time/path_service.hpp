@@ -70,7 +70,7 @@ private:
     RunPlan plan_;
     Sent active_, sent_;
     bool pending_ = false;
-    int skip_ = 0;  // borders to leave out after one from which nothing was found
+    int skip_ = 0;        // borders to leave out after one from which nothing was found
     bool stood_ = false;  // what was wanted last
     std::uint32_t ids_ = 0;
     std::uint32_t late_ = 0;

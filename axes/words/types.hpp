@@ -160,9 +160,9 @@ enum class ErrorId : std::uint16_t {
     path_not_planned = 0x0049,     ///< no motion along the path was found within all limits
     invalid_tool = 0x004A,         ///< no tool or payload of this number is defined; 0 cannot be written
     // Stored paths.
-    path_not_selected = 0x004B,    ///< MC_PathSelect has not prepared it, or another selection has since
-    path_in_use = 0x004C,          ///< a group goes it, or it waits to be gone
-    path_program = 0x004D,         ///< its text has a fault
+    path_not_selected = 0x004B,  ///< MC_PathSelect has not prepared it, or another selection has since
+    path_in_use = 0x004C,        ///< a group goes it, or it waits to be gone
+    path_program = 0x004D,       ///< its text has a fault
 };
 inline constexpr std::size_t error_id_count = 0x004E;
 
