@@ -31,6 +31,23 @@ TEST(GroupJog, AMemberGoesWhileItIsHeld) {
     EXPECT_LE(rig.point()[0] - at, 2.0 + 20 * 0.25) << "the planner's lead and the piece under way";
 }
 
+// G-089: a product that is turned by a right angle has its X along the machine's Y, and its -Y along the machine's X.
+TEST(GroupJog, GoesInTheDirectionsOfAProduct) {
+    JogRig rig(3, cartesian_arm());
+    const auto frame = rig.give({.kind = GroupCommandKind::set_frame, .frame = mcPCS_2, .target = {10, 20, 3, 0, 0, std::numbers::pi / 2}});
+    ASSERT_EQ(frame.error, ErrorId::none);
+    const auto begin = rig.point();
+    rig.frame = mcPCS_2;
+    rig.press({1, 0, 0});
+    ASSERT_EQ(rig.answer.error, ErrorId::none);
+    ASSERT_TRUE(rig.until_held([&] { return rig.axis(1).set_velocity > 19.9; }, 600)) << "positive along Y";
+    rig.press({});
+    ASSERT_TRUE(rig.until_held([&] { return rig.view().state == GroupStandby; }, 1000));
+    EXPECT_GT(rig.point()[1] - begin[1], 2);
+    EXPECT_NEAR(rig.point()[0], begin[0], 1e-9);
+    EXPECT_NEAR(rig.point()[2], begin[2], 1e-9);
+}
+
 // G-089: both inputs of a slot are the direction 0 of it; nothing moves, and the group is in GroupStandby. A direction of nothing is no jog.
 TEST(GroupJog, WhatIsNoJogIsRefused) {
     JogRig rig(2, plane_arm());
