@@ -11,7 +11,9 @@ trap 'umount -R "$root/proc" "$root/dev" 2>/dev/null; rm -rf --one-file-system "
 step() { printf '%-72s' "$1"; }
 ok() { echo "ok"; }
 fail() { echo "FAILED: $*" >&2; exit 1; }
-inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"; }
+clean=(env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive)
+inside() { chroot "$root" "${clean[@]}" "$@"; }
+stay_inside() { exec chroot "$root" "${clean[@]}" "$@"; } # for the background: its process is the command, which gets the signals
 
 step "a Debian 12 root"
 # shellcheck disable=SC2016 # apt's own
@@ -53,14 +55,14 @@ ok
 
 step "as a service's user, in real time: ready, well, and ended in order"
 inside sh -c 'install -d -o taktwerk -g taktwerk /run/taktwerk && cp /usr/share/taktwerk/machines/demo.yaml /usr/share/taktwerk/machines/demo-cell.svg /etc/taktwerk/'
-inside setpriv --reuid taktwerk --regid taktwerk --init-groups --no-new-privs taktwerk run /etc/taktwerk/demo.yaml --simulate --no-events >"$root/run.log" 2>&1 &
+stay_inside setpriv --reuid taktwerk --regid taktwerk --init-groups --no-new-privs taktwerk run /etc/taktwerk/demo.yaml --simulate --no-events >"$root/run.log" 2>&1 &
 run=$!
 for ((i = 0; i < 300; i++)); do ! inside taktwerk status >"$root/log" 2>&1 || break; sleep 0.1; done
 inside taktwerk status --json | grep -q '"well":true' || { cat "$root/log" "$root/run.log" >&2; fail "status"; }
 ok
 
 step "the page is served"
-inside setpriv --reuid taktwerk-hmi --regid taktwerk-hmi --init-groups taktwerk hmi --listen 127.0.0.1:18080 --audit /tmp/audit.jsonl >"$root/hmi.log" 2>&1 &
+stay_inside setpriv --reuid taktwerk-hmi --regid taktwerk-hmi --init-groups taktwerk hmi --listen 127.0.0.1:18080 --audit /tmp/audit.jsonl >"$root/hmi.log" 2>&1 &
 hmi=$!
 page=''
 for ((i = 0; i < 100; i++)); do
