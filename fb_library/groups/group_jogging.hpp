@@ -40,7 +40,7 @@ struct MC_GroupJog {
                          in<&Self::JogPositive>("", "ACS: of each member by IdentInGroup; else X, Y, Z, and turns about them"),
                          in<&Self::JogNegative>("", "likewise; both of a slot TRUE: it stands"),
                          in<&Self::VelOverride>("1", "0 to 1; default 1"), in<&Self::AccOverride>("1", "above 0 to 1; default 1"),
-                         in<&Self::CoordSystem>("", "in which frame: mcACS, mcMCS"),
+                         in<&Self::CoordSystem>("", "in which frame"),
                          in<&Self::MaxLinearDistance>("u", "how far a press goes at most; 0 = as far as it can"),
                          in<&Self::MaxAngularDistance>("rad", "likewise: rad of the tool's turns, in ACS u of turning members"),
                          out<&Self::Enabled>("", "the inputs count"), out<&Self::Active>("", "moving"),

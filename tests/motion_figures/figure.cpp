@@ -12,7 +12,7 @@ namespace {
 
 // Pixels. The page of a browser or of a printed manual shows this width as it is.
 constexpr double width = 760, left = 144, right = 58, top = 12, state_height = 16, panel_gap = 12, bit_height = 15, bits_gap = 30,
-                 block_gap = 5, foot = 8;
+                 block_gap = 5, foot = 8, way_gap = 34;
 constexpr double plot = width - left - right;
 constexpr double line_tolerance = 0.12;
 
@@ -26,14 +26,20 @@ struct StateLook {
     std::string_view name;
     const char* colour;
 };
-constexpr std::array<StateLook, 8> looks{{{"Disabled", "#d0d4d8"},
-                                          {"Standstill", "#eef1f3"},
-                                          {"Homing", "#cdbcec"},
-                                          {"DiscreteMotion", "#b5d7f0"},
-                                          {"ContinuousMotion", "#aee3d8"},
-                                          {"SynchronizedMotion", "#c8e3b4"},
-                                          {"Stopping", "#f9dca0"},
-                                          {"ErrorStop", "#f0a49d"}}};
+constexpr std::array<StateLook, 14> looks{{{"Disabled", "#d0d4d8"},
+                                           {"GroupDisabled", "#d0d4d8"},
+                                           {"GroupStandby", "#eef1f3"},
+                                           {"GroupHoming", "#cdbcec"},
+                                           {"GroupMoving", "#b5d7f0"},
+                                           {"GroupStopping", "#f9dca0"},
+                                           {"GroupErrorStop", "#f0a49d"},
+                                           {"Standstill", "#eef1f3"},
+                                           {"Homing", "#cdbcec"},
+                                           {"DiscreteMotion", "#b5d7f0"},
+                                           {"ContinuousMotion", "#aee3d8"},
+                                           {"SynchronizedMotion", "#c8e3b4"},
+                                           {"Stopping", "#f9dca0"},
+                                           {"ErrorStop", "#f0a49d"}}};
 
 const char* state_colour(std::string_view state) {
     const auto found = std::find_if(looks.begin(), looks.end(), [&](const auto& look) { return look.name == state; });
@@ -79,6 +85,10 @@ public:
         double y = top;
         state_band(y);
         y += state_height + 6;
+        if (!figure_.way.empty()) {
+            draw_way(y);
+            y += figure_.way_height + way_gap;
+        }
         const double panels_top = y;
         for (const auto& panel : figure_.panels) {
             draw(panel, y);
@@ -160,6 +170,43 @@ private:
         }
     }
 
+    /// To one scale: what is round is round.
+    void draw_way(double y0) {
+        std::array<double, 2> low = figure_.way.front(), high = low;
+        for (const auto& point : figure_.way)
+            for (std::size_t k = 0; k < 2; ++k) low[k] = std::min(low[k], point[k]), high[k] = std::max(high[k], point[k]);
+        const double room = 10, scale = std::min((plot - 2 * room) / std::max(high[0] - low[0], 1e-9),
+                                                 (figure_.way_height - 2 * room) / std::max(high[1] - low[1], 1e-9));
+        const double x0 = left + (plot - scale * (high[0] - low[0])) / 2;
+        const auto at_x = [&](double value) { return x0 + scale * (value - low[0]); };
+        const auto at_y = [&](double value) { return y0 + figure_.way_height - room - scale * (value - low[1]); };
+        put("<text x=\"10\" y=\"{}\" fill=\"#222\">way of the tool</text>", px(y0 + figure_.way_height / 2 - 2));
+        put("<text x=\"10\" y=\"{}\" fill=\"#778\" font-size=\"10\">mm, from above</text>", px(y0 + figure_.way_height / 2 + 11));
+        const double bottom = y0 + figure_.way_height, step = tick_step(std::max(high[0] - low[0], high[1] - low[1]), 8);
+        for (double k = std::ceil(low[0] / step - 1e-9); k * step <= high[0] + 1e-9; ++k) {
+            put("<path d=\"M{} {}V{}\" stroke=\"#eceff1\"/>", px(at_x(k * step)), px(y0), px(bottom));
+            put("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" font-size=\"10\" fill=\"#667\">{:.6g}</text>", px(at_x(k * step)),
+                px(bottom + 12), k == 0 ? 0.0 : k * step);
+        }
+        for (double k = std::ceil(low[1] / step - 1e-9); k * step <= high[1] + 1e-9; ++k) {
+            put("<path d=\"M{} {}H{}\" stroke=\"#eceff1\"/>", px(x0 - room), px(at_y(k * step)), px(at_x(high[0]) + room));
+            put("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-size=\"10\" fill=\"#667\">{:.6g}</text>", px(x0 - room - 4),
+                px(at_y(k * step) + 3.5), k == 0 ? 0.0 : k * step);
+        }
+        for (std::size_t from = 0; from + 1 < samples_;) {
+            std::size_t to = from + 1;
+            while (to + 1 < samples_ && figure_.owner[to] == figure_.owner[from]) ++to;
+            std::vector<std::array<double, 2>> part;
+            for (std::size_t i = from; i <= to; ++i) part.push_back({at_x(figure_.way[i][0]), at_y(figure_.way[i][1])});
+            std::string points;
+            for (const auto i : simplified(part, line_tolerance))
+                points += fmt::format("{}{},{}", points.empty() ? "" : " ", px(part[i][0]), px(part[i][1]));
+            put("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"/>", points,
+                block_colour(figure_.owner[from]));
+            from = to;
+        }
+    }
+
     void owned_line(const std::vector<double>& pixels) {
         for (std::size_t from = 0; from + 1 < samples_;) {
             std::size_t to = from + 1;
@@ -223,29 +270,49 @@ private:
 
 }  // namespace
 
-std::vector<std::size_t> simplified(const std::vector<double>& y, double dx, double tolerance) {
-    std::vector<bool> keep(y.size(), false);
-    std::vector<std::pair<std::size_t, std::size_t>> open{{0, y.size() - 1}};
+namespace {
+
+/// `off(from, to, i)`: how far i is from the straight line between the two.
+template <class Distance>
+std::vector<std::size_t> thinned(std::size_t size, double tolerance, const Distance& off) {
+    std::vector<bool> keep(size, false);
+    std::vector<std::pair<std::size_t, std::size_t>> open{{0, size - 1}};
     keep.front() = keep.back() = true;
     while (!open.empty()) {
         const auto [from, to] = open.back();
         open.pop_back();
-        const double rise = y[to] - y[from], run = dx * static_cast<double>(to - from), length = std::hypot(rise, run);
         double worst = tolerance;
         std::size_t at = from;
-        for (std::size_t i = from + 1; i < to; ++i) {
-            const double off = std::abs((y[i] - y[from]) * run - dx * static_cast<double>(i - from) * rise) / length;
-            if (off > worst) worst = off, at = i;
-        }
+        for (std::size_t i = from + 1; i < to; ++i)
+            if (const double distance = off(from, to, i); distance > worst) worst = distance, at = i;
         if (at == from) continue;
         keep[at] = true;
         open.push_back({from, at});
         open.push_back({at, to});
     }
     std::vector<std::size_t> kept;
-    for (std::size_t i = 0; i < y.size(); ++i)
+    for (std::size_t i = 0; i < size; ++i)
         if (keep[i]) kept.push_back(i);
     return kept;
+}
+
+}  // namespace
+
+std::vector<std::size_t> simplified(const std::vector<double>& y, double dx, double tolerance) {
+    return thinned(y.size(), tolerance, [&](std::size_t from, std::size_t to, std::size_t i) {
+        const double rise = y[to] - y[from], run = dx * static_cast<double>(to - from);
+        return std::abs((y[i] - y[from]) * run - dx * static_cast<double>(i - from) * rise) / std::hypot(rise, run);
+    });
+}
+
+std::vector<std::size_t> simplified(const std::vector<std::array<double, 2>>& points, double tolerance) {
+    return thinned(points.size(), tolerance, [&](std::size_t from, std::size_t to, std::size_t i) {
+        const auto &a = points[from], &b = points[to], &p = points[i];
+        const double u = b[0] - a[0], v = b[1] - a[1], length = std::hypot(u, v);
+        // A way that comes back to where it began has no line between its ends; one that turns back is longer than that line.
+        const double along = length > 1e-9 ? std::clamp(((p[0] - a[0]) * u + (p[1] - a[1]) * v) / (length * length), 0.0, 1.0) : 0;
+        return std::hypot(p[0] - a[0] - along * u, p[1] - a[1] - along * v);
+    });
 }
 
 std::string svg(const Figure& figure) { return Drawing(figure).text(); }

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 const fs::path pages = fs::path{TAKTWERK_SOURCE_DIR} / "docs/motion";
 
 constexpr std::array all_scenes{moves,  endless_moves, stops,  buffer_modes,    superimposed, couplings, time_profiles,
-                                torque, following,     homing, probes_and_cams, modulo,       by_hand};
+                                torque, following,     homing, probes_and_cams, modulo,       by_hand,   groups};
 
 std::string text_of(const fs::path& path) {
     std::ifstream file(path);

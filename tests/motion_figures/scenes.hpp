@@ -20,5 +20,6 @@ namespace taktwerk::figures {
 [[nodiscard]] std::vector<Figure> probes_and_cams();
 [[nodiscard]] std::vector<Figure> modulo();
 [[nodiscard]] std::vector<Figure> by_hand();
+[[nodiscard]] std::vector<Figure> groups();
 
 }  // namespace taktwerk::figures

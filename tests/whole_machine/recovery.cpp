@@ -51,24 +51,35 @@ double away_from_ends(Rig& rig, std::size_t i) {
     return view.actual_position < (ends ? (info.position_min + info.position_max) / 2 : 0) ? 1 : -1;
 }
 
-bool power_and_move(Rig& rig) {
+bool all_powered(Rig& rig) {
+    for (std::size_t i = 0; i < rig.m.machine->layout().axes.size(); ++i)
+        if (is_moved_by_hand(rig, i) && !(rig.m.axis(i).powered && rig.m.axis(i).state == AxisState::Standstill)) return false;
+    return true;
+}
+
+/// To a drive that has its limit switch as a fault (SV-DA200 Er21), who comes to stand on the edge of one falls when it gets power: it is inside then.
+bool fell_at_its_switch(Rig& rig) {
+    for (std::size_t i = 0; i < rig.m.machine->layout().axes.size(); ++i) {
+        const auto& view = rig.m.axis(i);
+        if (view.drive_state == axes::PowerState::fault && (view.negative_limit_switch || view.positive_limit_switch)) return true;
+    }
+    return false;
+}
+
+bool switched_on(Rig& rig) {
     using enum runtime::OperatorAction;
-    const auto& layout = rig.m.machine->layout();
-    const auto powered = [&] {
-        for (std::size_t i = 0; i < layout.axes.size(); ++i)
-            if (is_moved_by_hand(rig, i) && !(rig.m.axis(i).powered && rig.m.axis(i).state == AxisState::Standstill)) return false;
-        return true;
-    };
     (void)rig.submit(override_velocity, 0xFFFF, false, 1);  // somebody may have turned it down to nothing
-    for (std::uint16_t i = 0; i < layout.axes.size(); ++i)
+    for (std::uint16_t i = 0; i < rig.m.machine->layout().axes.size(); ++i)
         if (is_moved_by_hand(rig, i)) (void)rig.submit(power, i, true);
     // What a program held goes off and comes back: the wish is the operator's from here on.
     int in_a_row = 0;
-    const auto settled = [&] { return (in_a_row = powered() ? in_a_row + 1 : 0) > 500; };
-    if (!rig.until(settled, 8s)) {
-        rig.problem("not every axis gets power: " + states(rig) + rig.standing());
-        return false;
-    }
+    const auto settled = [&] { return (in_a_row = all_powered(rig) ? in_a_row + 1 : 0) > 500; };
+    return rig.until(settled, 8s);
+}
+
+bool move_by_hand(Rig& rig) {
+    using enum runtime::OperatorAction;
+    const auto& layout = rig.m.machine->layout();
     for (std::uint16_t i = 0; i < layout.axes.size(); ++i) {
         if (!is_moved_by_hand(rig, i)) continue;
         const auto& info = layout.axes[i];
@@ -87,8 +98,18 @@ bool power_and_move(Rig& rig) {
             rig.problem(
                 fmt::format("{} does not move by hand: from {} to {}; {}{}", info.name, before, after, states(rig), rig.standing()));
     }
-    if (!rig.until(powered, 5s)) rig.problem("not every axis stands: " + states(rig) + rig.standing());
+    if (!rig.until([&] { return all_powered(rig); }, 5s)) rig.problem("not every axis stands: " + states(rig) + rig.standing());
     return rig.problems.empty();
+}
+
+bool reset(Rig& rig, Hands& hands) {
+    const auto end = rig.now() + 60s;
+    while (!all_reset(rig) && rig.now() < end && !rig.over()) {
+        hands.reset_all();
+        rig.run(700ms);
+    }
+    if (!all_reset(rig)) rig.problem("a reset does not bring it back: " + states(rig) + rig.standing());
+    return all_reset(rig);
 }
 
 }  // namespace
@@ -114,16 +135,12 @@ bool recover(Rig& rig, Hands& hands) {
                            [](const auto& axis) { return axis.set_velocity == 0 || axis.state == AxisState::Disabled; });
     };
     if (!rig.until(stands, 15s)) rig.problem("in manual mode something moves on: " + states(rig));
-    const auto end = rig.now() + 60s;
-    while (!all_reset(rig) && rig.now() < end && !rig.over()) {
-        hands.reset_all();
-        rig.run(700ms);
-    }
-    if (!all_reset(rig)) {
-        rig.problem("a reset does not bring it back: " + states(rig) + rig.standing());
+    if (!reset(rig, hands)) return false;
+    if (!switched_on(rig) && !(fell_at_its_switch(rig) && reset(rig, hands) && switched_on(rig))) {
+        rig.problem("not every axis gets power: " + states(rig) + rig.standing());
         return false;
     }
-    if (!power_and_move(rig)) return false;
+    if (!move_by_hand(rig)) return false;
     // What is left says nothing any more once it is acknowledged.
     // A cable that lost its link is told for a minute, and nobody can take that back (where the host slept meanwhile it has seen no more of it).
     constexpr int half_seconds = 20, of_a_minute = 130;
