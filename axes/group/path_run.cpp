@@ -251,10 +251,17 @@ void PathRun::clear() noexcept {
     limiter_ = PathLimiter::none;
 }
 
+/// The next run may be known to be stuck long before this one is over.
+ErrorId PathRun::stuck() const noexcept {
+    if (!exists_ || stuck_ == ErrorId::none) return ErrorId::none;
+    const std::uint32_t begun = inside_->begun;
+    return stuck_run_ == begun || (stuck_run_ == begun + 1 && at_end_of_run()) ? stuck_ : ErrorId::none;
+}
+
 bool PathRun::over() const noexcept {
     if (!exists_) return true;
     const auto& in = *inside_;
-    return !in.player || (in.player->standing() && (stops_ || arrived_ || stuck_ != ErrorId::none)) || fault_ != ErrorId::none;
+    return !in.player || (in.player->standing() && (stops_ || arrived_ || stuck() != ErrorId::none)) || fault_ != ErrorId::none;
 }
 
 void PathRun::advance(Duration period) noexcept {
@@ -262,7 +269,10 @@ void PathRun::advance(Duration period) noexcept {
     tell();
     for (GroupVerdict v; in.link.verdicts.try_pop(v);) {
         if (v.life != in.life) continue;
-        if (v.standing) stuck_ = v.error;
+        if (v.standing) {
+            stuck_ = v.error;
+            stuck_run_ = v.run;
+        }
         in.verdicts[in.next_verdict++ % in.verdicts.size()] = v;
     }
     if (!exists_ || !in.player || fault_ != ErrorId::none) return;

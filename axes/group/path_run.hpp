@@ -77,8 +77,8 @@ public:
     /// At rest where the way of command() ends.
     [[nodiscard]] bool arrived() const noexcept { return arrived_; }
     [[nodiscard]] bool stops() const noexcept { return stops_; }
-    /// The reason why it has come to rest before the end and finds no way on; none: it has not.
-    [[nodiscard]] ErrorId stuck() const noexcept { return stuck_; }
+    /// The reason why it has come to rest before the end and finds no way on, or none into the next run of a stored path; none: it has not.
+    [[nodiscard]] ErrorId stuck() const noexcept;
     /// The set-point could not follow the way: out of reach, which the check before the start excludes. G-021
     [[nodiscard]] ErrorId fault() const noexcept { return fault_; }
 
@@ -119,6 +119,7 @@ private:
     bool exists_ = false, arrived_ = false;
     bool stops_ = false;  // the goal is rest, not the end
     ErrorId stuck_ = ErrorId::none, fault_ = ErrorId::none;
+    std::uint32_t stuck_run_ = 0;
     PathLimiter limiter_ = PathLimiter::none;
     std::uint8_t narrowest_ = 0;
 };

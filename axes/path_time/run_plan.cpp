@@ -15,6 +15,7 @@ constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
 constexpr double slow_share = 0.02;     // of v2: what goes on where a former plan stopped
 constexpr double longest_piece = 0.02;  // s
+constexpr double longest_run = 1e12;    // s: what takes longer is no motion
 constexpr double most_parts = 2500;     // that pieces are cut into
 constexpr double braking_share = 0.7;   // of the deceleration, to a lowered velocity
 constexpr int window = 192;             // cells that are solved and stay
@@ -335,7 +336,7 @@ void RunPlanner::slow_down(const LimitUse& use) {
     for (double& middle : middles_) middle *= share;
 }
 
-void RunPlanner::make_pieces(RunPlan& out) const {
+bool RunPlanner::make_pieces(RunPlan& out) const {
     const auto& nodes = grid_.nodes;
     out.pieces.clear();
     double time = 0;
@@ -353,6 +354,7 @@ void RunPlanner::make_pieces(RunPlan& out) const {
     if (begins > 0) add(TimePiece::rest(TimePiece::Kind::from_rest, task_.from, begins, shape.squares.front()));
     double whole = 0;
     for (std::size_t c = 0; c < middles_.size(); ++c) whole += (nodes[c + 1] - nodes[c]) / std::sqrt(middles_[c]);
+    if (!(whole < longest_run)) return false;  // nor is what is no number
     const double longest = std::max(longest_piece, whole / most_parts);
     for (std::size_t c = 0; c < middles_.size(); ++c) {
         const double length = nodes[c + 1] - nodes[c], last = problem_.node(static_cast<int>(c) + 1, middles_);
@@ -377,6 +379,7 @@ void RunPlanner::make_pieces(RunPlan& out) const {
     out.shape.end = task_.to;
     out.shape.velocity_factor = task_.velocity_factor;
     out.shape.coarse = grid_.coarse;
+    return true;
 }
 
 bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
@@ -479,7 +482,8 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     }
     out.use = use;
     out.cells = out.planned = problem_.cells();
-    make_pieces(out);
+    out.pieces.clear();
+    out.found = out.found && make_pieces(out);
 }
 
 /// The first cell of `former` that a further end has an influence on; 0 where there is none before it.

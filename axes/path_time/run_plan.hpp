@@ -68,7 +68,8 @@ private:
     void split_cells();
     void slow_down(const LimitUse& use);
     [[nodiscard]] double rest_square(double at, double length, CurveSide side) const;
-    void make_pieces(RunPlan& out) const;
+    /// False: it would last too long to be a motion.
+    [[nodiscard]] bool make_pieces(RunPlan& out) const;
     [[nodiscard]] bool from_rest() const noexcept { return grid_.start.rest_length > 0; }
     /// What the path's velocity limit is times where nothing may cross it.
     [[nodiscard]] double hard_factor() const noexcept { return task_.velocity > 0 ? 1 : task_.velocity_factor; }
