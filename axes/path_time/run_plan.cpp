@@ -17,7 +17,10 @@ constexpr double slow_share = 0.02;     // of v2: what goes on where a former pl
 constexpr double longest_piece = 0.02;  // s
 constexpr double longest_run = 1e12;    // s: what takes longer is no motion
 constexpr double most_parts = 2500;     // that pieces are cut into
-constexpr double braking_share = 0.7;   // of the deceleration, to a lowered velocity
+constexpr double braking_share = 0.7;   // of the deceleration and the jerk, to a lowered velocity
+constexpr double guessed_share = 0.75;  // the same where the search begins: a little below
+constexpr double guessed_below = 0.97;  // of that velocity
+constexpr double over_ramp = 1.0005;    // of v2 on that braking: what cells cannot follow
 constexpr int window = 192;             // cells that are solved and stay
 constexpr int look_ahead = 48;          // cells behind them that are solved with them, at least: as far as braking would reach
 constexpr int beside = 10;              // cells on both sides that are solved again with one that was beyond a limit
@@ -67,7 +70,8 @@ void RunPlanner::add_cell(int cell) {
         if (!shared) {
             // Above a lowered velocity factor a moving beginning may be; it is left as soon as the limits allow.
             const double wanted = p.path.velocity * task_.velocity_factor;
-            if (moving && task_.velocity_factor < 1 && wanted < unlimited) problem_.add_soft_cap(wanted * wanted);
+            if (moving && task_.velocity_factor < 1 && wanted < unlimited)
+                problem_.add_soft_cap(std::max(wanted * wanted, ramp_.empty() ? 0 : ramp_[3 * c + static_cast<std::size_t>(place)]));
             if (cell == 0 && place == CellPlace::begin)
                 square = std::min(square, rest_square(task_.from, grid_.start.rest_length, CurveSide::after));
             if (cell + 1 == problem_.cells() && place == CellPlace::end)
@@ -101,12 +105,32 @@ void RunPlanner::add_cell(int cell) {
 void RunPlanner::make_problem() {
     check_.sample(*curve_, limits_, grid_.nodes, grid_.breaks);
     problem_.begin(grid_.nodes, grid_.start, grid_.end, untouched);
+    make_ramp();
     for (int i = 0; i < problem_.cells(); ++i) add_cell(i);
     for (int i = 0; i < problem_.cells(); ++i) {
         const CellShare& share = shares_[static_cast<std::size_t>(i)];
         if (share.velocity < untouched.velocity || share.acceleration < untouched.acceleration || share.jerk < untouched.jerk)
             push_share(i);
     }
+}
+
+/// A lowered velocity is come to on a ramp. Without one the search would be below it as soon as can be, with all of the deceleration still on it, and
+/// pass far below.
+void RunPlanner::make_ramp() {
+    ramp_.clear();
+    if (task_.velocity <= 0 || task_.velocity_factor >= 1) return;
+    const Braking braking = braking_to_factor(1, braking_share);
+    const double way = braking.way();
+    if (!(way > 0)) return;
+    BrakingByWay by_way(braking);
+    const auto square = [&](double s) { return s < task_.from + way ? over_ramp * std::pow(by_way.velocity(s - task_.from), 2) : 0; };
+    double first = square(grid_.nodes.front());
+    for (std::size_t i = 0; i + 1 < grid_.nodes.size() && first > 0; ++i) {
+        const double middle = square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2), last = square(grid_.nodes[i + 1]);
+        ramp_.insert(ramp_.end(), {first, last > 0 ? std::max(2 * middle - (first + last) / 2, middle) : middle, last});
+        first = last;
+    }
+    ramp_.resize(3 * (grid_.nodes.size() - 1), 0.0);
 }
 
 /// What the cell may use, told to all places that it has a part of.
@@ -180,13 +204,12 @@ void RunPlanner::brake() {
     }
 }
 
-/// To a lowered velocity factor, where the beginning is above it.
-Braking RunPlanner::braking_to_factor() const {
+/// To this part of a lowered velocity, where the beginning is above it, with this share of the limits.
+Braking RunPlanner::braking_to_factor(double part, double share) const {
     const TimedCurvePoint p = curve_->at(task_.from, CurveSide::after);
     const AlongLimits l = along_limits(p, limits_, 1);
     const double wanted = std::min(l.velocity, p.path.velocity) * task_.velocity_factor;
-    return {task_.velocity, task_.acceleration, braking_share * l.deceleration, braking_share * l.jerk,
-            std::min(0.7 * wanted, task_.velocity)};
+    return {task_.velocity, task_.acceleration, share * l.deceleration, share * l.jerk, std::min(part * wanted, task_.velocity)};
 }
 
 /// From a moving state: the cells of the former plan as long as it does not brake for its end for good, and its v2 as the first guess. Where
@@ -223,7 +246,7 @@ void RunPlanner::take_over(const RunShape& former) {
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
     // A lowered velocity factor: braking to what is allowed.
-    const Braking braking = braking_to_factor();
+    const Braking braking = braking_to_factor(guessed_below, guessed_share);
     BrakingByWay by_way(braking);
     const bool slower = task_.velocity_factor < former.velocity_factor;
     const auto braked_square = [&](double s) { return slower ? std::pow(by_way.velocity(s - task_.from), 2) : unlimited; };
@@ -409,6 +432,48 @@ bool RunPlanner::sweep(SpeedGuess guess, RunPlan& out) {
     return true;
 }
 
+/// What a search gains is compared with the time of all that it looks at. Beside a long cruise a slow moment behind the braking to a lowered velocity
+/// counts nothing there: so that is looked at by itself.
+bool RunPlanner::settle_braking(RunPlan& out) {
+    if (task_.brake_way <= 0) return true;
+    for (const double share : {20.0, 4.0, 1.5}) {
+        const auto behind = std::upper_bound(grid_.nodes.begin(), grid_.nodes.end(), task_.from + share * task_.brake_way);
+        const int last = std::min(static_cast<int>(behind - grid_.nodes.begin()), problem_.cells());
+        if (last < problem_.cells() && !solve({0, last}, SpeedGuess::near, nullptr, out)) return false;
+    }
+    return true;
+}
+
+/// The same of the ramps at both ends of a long run: some tenths of a second that are lost there are little of it, but much to who waits for it to move.
+bool RunPlanner::settle_ramps(RunPlan& out) {
+    if (grid_.coarse) return true;
+    const int n = problem_.cells();
+    const auto time_of = [&](int cell) {
+        const auto c = static_cast<std::size_t>(cell);
+        return (grid_.nodes[c + 1] - grid_.nodes[c]) / std::sqrt(middles_[c]);
+    };
+    double whole = 0;
+    for (int c = 0; c < n; ++c) whole += time_of(c);
+    const auto ramp = [&](double s, CurveSide side) {
+        const AlongLimits l = along_limits(curve_->at(s, side), limits_, task_.velocity_factor);
+        return l.velocity / std::min(l.acceleration, l.deceleration) + l.acceleration / l.jerk;
+    };
+    // Many of them long, and looked at some of them long.
+    constexpr double many = 20, some = 4;
+    const double up = some * ramp(task_.from, CurveSide::after), down = some * ramp(task_.to, CurveSide::before);
+    if (from_rest() && whole > many / some * up) {
+        int last = 0;
+        for (double time = 0; last < n && time < up; ++last) time += time_of(last);
+        if (last < n && !solve({0, last}, SpeedGuess::near, nullptr, out)) return false;
+    }
+    if (whole > many / some * down) {
+        int first = n;
+        for (double time = 0; first > 0 && time < down; --first) time += time_of(first - 1);
+        if (first > 1 && !solve({first, n}, SpeedGuess::near, nullptr, out)) return false;
+    }
+    return true;
+}
+
 /// Solves again around the cells that are beyond a limit, until none is.
 bool RunPlanner::mend(RunPlan& out) {
     while (!beyond_.empty() && out.rounds < rounds_at_most) {
@@ -449,7 +514,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     split_.clear();
     splits_left_ = split_rounds;
     if (former != nullptr && task.velocity > 0 && task.halt_share <= 0 && task.velocity_factor < former->velocity_factor) {
-        const double way = braking_to_factor().way();
+        const double way = braking_to_factor(guessed_below, braking_share).way();
         if (way > 0 && way < 0.9 * (task.to - task.from)) task_.brake_way = way;
     }
     grid_.make(*curve_, limits_, task_,
@@ -467,7 +532,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     }
     uses_.assign(middles_.size(), {});
     ++out.rounds;
-    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out);
+    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out) && settle_braking(out) && settle_ramps(out);
     out.use = verify({0, problem_.cells()});
     out.found = solved && mend(out);
     LimitUse use;
