@@ -127,6 +127,17 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     return true;
 }
 
+bool PathRun::fits(const GroupMembers& members) const noexcept {
+    const auto& in = *inside_;
+    for (std::size_t k = 0; k < in.members; ++k) {
+        if (!members.has(in.places[k])) return false;
+        const MemberLimits now = limits_of(members.axis(in.places[k])), &then = in.limits[k];
+        const bool wide = now.velocity >= then.velocity && now.acceleration >= then.acceleration && now.jerk >= then.jerk;
+        if (!wide || now.low > then.low || now.high < then.high) return false;
+    }
+    return true;
+}
+
 bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
                    const JointVector* pressed) noexcept {
     auto& in = *inside_;
@@ -309,7 +320,7 @@ void PathRun::look() noexcept {
         in.q = run.to;
         in.velocity = in.acceleration = {};
     } else {
-        in.at = way_point(run.section, run, s, in.arm.get(), in.members, in.q);
+        in.at = way_point(run.section, run, s, in.arm.get(), in.members, in.q, 2);
         if (!in.at.miss.ok()) {
             fault_ = ErrorId::out_of_reach;
             return;

@@ -36,6 +36,8 @@ public:
     /// The members stand where they are; whatever was on the way is forgotten. `factors` from now on. False: not now, ask again in the next cycle.
     /// `caps`: the members keep below these too, where they are above 0.
     bool restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps = nullptr) noexcept;
+    /// What was planned is inside the limits that the members have now.
+    [[nodiscard]] bool fits(const GroupMembers& members) const noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
     /// False: not now.
     /// `pressed`: where a jog began, by place.
