@@ -448,28 +448,26 @@ bool RunPlanner::settle_braking(RunPlan& out) {
 bool RunPlanner::settle_ramps(RunPlan& out) {
     if (grid_.coarse) return true;
     const int n = problem_.cells();
-    const auto time_of = [&](int cell) {
-        const auto c = static_cast<std::size_t>(cell);
-        return (grid_.nodes[c + 1] - grid_.nodes[c]) / std::sqrt(middles_[c]);
-    };
     double whole = 0;
-    for (int c = 0; c < n; ++c) whole += time_of(c);
-    const auto ramp = [&](double s, CurveSide side) {
+    for (int c = 0; c < n; ++c)
+        whole += (grid_.nodes[static_cast<std::size_t>(c) + 1] - grid_.nodes[static_cast<std::size_t>(c)]) /
+                 std::sqrt(middles_[static_cast<std::size_t>(c)]);
+    const auto way_of_ramp = [&](double s, CurveSide side) {
+        constexpr double many = 20;  // ramps in a long run
         const AlongLimits l = along_limits(curve_->at(s, side), limits_, task_.velocity_factor);
-        return l.velocity / std::min(l.acceleration, l.deceleration) + l.acceleration / l.jerk;
+        const double time = l.velocity / std::min(l.acceleration, l.deceleration) + l.acceleration / l.jerk;
+        return whole > many * time ? time * l.velocity : 0.0;
     };
-    // Many of them long, and looked at some of them long.
-    constexpr double many = 20, some = 4;
-    const double up = some * ramp(task_.from, CurveSide::after), down = some * ramp(task_.to, CurveSide::before);
-    if (from_rest() && whole > many / some * up) {
-        int last = 0;
-        for (double time = 0; last < n && time < up; ++last) time += time_of(last);
-        if (last < n && !solve({0, last}, SpeedGuess::near, nullptr, out)) return false;
-    }
-    if (whole > many / some * down) {
-        int first = n;
-        for (double time = 0; first > 0 && time < down; --first) time += time_of(first - 1);
-        if (first > 1 && !solve({first, n}, SpeedGuess::near, nullptr, out)) return false;
+    const double up = from_rest() ? way_of_ramp(task_.from, CurveSide::after) : 0, down = way_of_ramp(task_.to, CurveSide::before);
+    const auto cell_at = [&](double s) {
+        const auto behind = std::upper_bound(grid_.nodes.begin(), grid_.nodes.end(), s);
+        return std::clamp(static_cast<int>(behind - grid_.nodes.begin()), 1, n);
+    };
+    // From many ramps to some: what lies beside is as it was found before.
+    for (const double share : {64.0, 8.0, 2.0}) {
+        const CellRange first{0, cell_at(task_.from + share * up)}, last{cell_at(task_.to - share * down) - 1, n};
+        if (up > 0 && first.last < n && !solve(first, SpeedGuess::near, nullptr, out)) return false;
+        if (down > 0 && last.first > 0 && last.first < n && !solve(last, SpeedGuess::near, nullptr, out)) return false;
     }
     return true;
 }
