@@ -97,9 +97,31 @@ bool AxisParameters::beyond_reach(double edge, bool positive) const noexcept {
     return positive ? std::max({here, stop, target, next}) > edge : std::min({here, stop, target, next}) < edge;
 }
 
+/// A group's path is planned and checked with the limits that held when it began: narrower ones would find the axis beyond them, or stop it beside
+/// the others. Wider ones count from the next path on.
+bool AxisParameters::narrows(const WriteParameter& wanted) const noexcept {
+    const auto& p = view_.parameters;
+    switch (wanted.number) {
+        case software_limit_positive: return p[enable_limit_positive] != 0 && wanted.value < p[software_limit_positive];
+        case software_limit_negative: return p[enable_limit_negative] != 0 && wanted.value > p[software_limit_negative];
+        case enable_limit_positive:
+        case enable_limit_negative:
+        case velocity_of_application:
+        case acceleration_of_application:
+        case deceleration_of_application:
+        case jerk_of_application: {
+            const double now = p[place_of(static_cast<Parameter>(wanted.number))];
+            const bool enables = wanted.number == enable_limit_positive || wanted.number == enable_limit_negative;
+            return enables ? wanted.value != 0 && now == 0 : wanted.value < now;
+        }
+        default: return false;
+    }
+}
+
 /// What only the axis knows: whether the change would leave a moving axis without its way to stop.
 ErrorId AxisParameters::refuse_now(const WriteParameter& wanted) const noexcept {
     const auto& p = view_.parameters;
+    if (body_.led() && narrows(wanted)) return ErrorId::axis_grouped;
     switch (wanted.number) {
         case software_limit_positive:
             return p[enable_limit_positive] != 0 && beyond_reach(wanted.value, true) ? ErrorId::beyond_software_limit : ErrorId::none;

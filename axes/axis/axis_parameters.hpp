@@ -27,6 +27,7 @@ public:
 
 private:
     [[nodiscard]] bool beyond_reach(double edge, bool positive) const noexcept;
+    [[nodiscard]] bool narrows(const WriteParameter& wanted) const noexcept;
     [[nodiscard]] ErrorId refuse_now(const WriteParameter& wanted) const noexcept;
 
     AxisBody& body_;

@@ -259,6 +259,8 @@ bool AxisGroup::begin_active() noexcept {
     if (jogs() && !turn_jog()) return false;
     const auto over_with = begin_way(active);
     if (!over_with) return true;
+    // What was planned behind it begins where it would have ended.
+    if (*over_with == ErrorId::path_not_planned) run_.clear();
     queue_.finish_active(*over_with == ErrorId::none ? Outcome::done : Outcome::error, *over_with);
     return false;
 }

@@ -58,6 +58,7 @@ struct GroupVerdict {
     CommandId id = 0;
     ErrorId error = ErrorId::none;  ///< none: there is nothing to go
     bool standing = false;          ///< the run that it is on has come to rest for good
+    std::uint32_t run = 0;          ///< of a standing one: which run that is, from 1
 };
 
 struct RunTrack {

@@ -24,10 +24,6 @@ void AxisGroup::walk_path(Duration period) noexcept {
         shown.line = run_.line();
         shown.number = run_.number();
     }
-    if (run_.stuck() != ErrorId::none && run_.over()) {
-        shown.place = {.error = run_.stuck(), .line = shown.line};
-        return queue_.finish_active(Outcome::error, run_.stuck());
-    }
     const bool goes = interrupting_ == 0;
     while (const PathNote* note = run_.note()) {
         if (!serve(*note, goes ? period : Duration{})) return;
@@ -36,6 +32,10 @@ void AxisGroup::walk_path(Duration period) noexcept {
         const bool told = note->kind == PathNote::Kind::tell;
         run_.drop_note();
         if (told) return;  // one a cycle, or nobody sees it
+    }
+    if (run_.stuck() != ErrorId::none && run_.over()) {
+        shown.place = {.error = run_.stuck(), .line = shown.line};
+        return queue_.finish_active(Outcome::error, run_.stuck());
     }
     if (goes) run_.go_over(active.id);
 }

@@ -23,8 +23,6 @@ double stopping_way(double v, double a, double j) noexcept {
 
 }  // namespace
 
-void GroupPlanner::say(CommandId id, ErrorId error, bool standing) { (void)link_.verdicts.try_push({life_, id, error, standing}); }
-
 void GroupPlanner::restart(const GroupOrder& order) {
     life_ = order.life;
     wish_ = order;
@@ -48,7 +46,8 @@ void GroupPlanner::take(const GroupOrder& order) {
             break;
         case GroupOrder::Kind::wish: {
             const bool other = order.factors.acceleration != wish_.factors.acceleration || order.factors.jerk != wish_.factors.jerk;
-            if (other) ++revision_;
+            const bool other_ramp = order.stands && (order.own_ramp != wish_.own_ramp || order.ramp != wish_.ramp);
+            if (other || other_ramp) ++revision_;
             wish_ = order;
             break;
         }
@@ -260,10 +259,17 @@ void GroupPlanner::feed(Run& run) {
         run.offered = true;
         run.track.ready.store(GroupLink::both(life_, run.number), std::memory_order_release);
     }
-    if (answer == PathAnswer::stuck && !run.said_stuck) {
-        run.said_stuck = true;
-        say(run.curve.path.section_at(run.service.end()).command, ErrorId::path_not_planned, true);
-    }
+    if (answer == PathAnswer::stuck) say_stuck(run);
+}
+
+/// Where not even the run's beginning was found nobody goes over to it: that is what became of its first command, in its turn. On the way, and of a
+/// stored path, whose runs are all one command, it is the end of what runs.
+void GroupPlanner::say_stuck(Run& run) {
+    if (run.said_stuck) return;
+    run.said_stuck = true;
+    const bool begins = !run.offered && !run.pulled;
+    const CommandId id = begins ? run.first : run.curve.path.section_at(run.service.end()).command;
+    (void)link_.verdicts.try_push({life_, id, ErrorId::path_not_planned, !begins, run.number});
 }
 
 }  // namespace taktwerk::axes

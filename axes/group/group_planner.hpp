@@ -74,7 +74,8 @@ private:
     [[nodiscard]] double final_end(const Run& run) const;
     [[nodiscard]] double rolling_end(const Run& run) const;
     void publish(Run& run);
-    void say(CommandId id, ErrorId error, bool standing = false);
+    void say(CommandId id, ErrorId error) { (void)link_.verdicts.try_push({life_, id, error}); }
+    void say_stuck(Run& run);
     [[nodiscard]] Run* last() const noexcept { return next_ == 0 ? nullptr : runs_[(next_ - 1) % 2].get(); }
 
     GroupLink& link_;

@@ -218,6 +218,7 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
             if (std::abs(members_.axis(i).view().set_position - place) > 1e-9 * std::max(1.0, std::abs(place)))
                 return {0, ErrorId::not_at_interruption};
         }
+    if (on_way && !run_.fits(members_)) return {0, ErrorId::path_not_planned};
     if (queue_.has_active() || queue_.waiting() > 0) {
         if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
         if (on_way) {

@@ -127,6 +127,17 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     return true;
 }
 
+bool PathRun::fits(const GroupMembers& members) const noexcept {
+    const auto& in = *inside_;
+    for (std::size_t k = 0; k < in.members; ++k) {
+        if (!members.has(in.places[k])) return false;
+        const MemberLimits now = limits_of(members.axis(in.places[k])), &then = in.limits[k];
+        const bool wide = now.velocity >= then.velocity && now.acceleration >= then.acceleration && now.jerk >= then.jerk;
+        if (!wide || now.low > then.low || now.high < then.high) return false;
+    }
+    return true;
+}
+
 bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
                    const JointVector* pressed) noexcept {
     auto& in = *inside_;
@@ -251,10 +262,17 @@ void PathRun::clear() noexcept {
     limiter_ = PathLimiter::none;
 }
 
+/// The next run may be known to be stuck long before this one is over.
+ErrorId PathRun::stuck() const noexcept {
+    if (!exists_ || stuck_ == ErrorId::none) return ErrorId::none;
+    const std::uint32_t begun = inside_->begun;
+    return stuck_run_ == begun || (stuck_run_ == begun + 1 && at_end_of_run()) ? stuck_ : ErrorId::none;
+}
+
 bool PathRun::over() const noexcept {
     if (!exists_) return true;
     const auto& in = *inside_;
-    return !in.player || (in.player->standing() && (stops_ || arrived_ || stuck_ != ErrorId::none)) || fault_ != ErrorId::none;
+    return !in.player || (in.player->standing() && (stops_ || arrived_ || stuck() != ErrorId::none)) || fault_ != ErrorId::none;
 }
 
 void PathRun::advance(Duration period) noexcept {
@@ -262,7 +280,10 @@ void PathRun::advance(Duration period) noexcept {
     tell();
     for (GroupVerdict v; in.link.verdicts.try_pop(v);) {
         if (v.life != in.life) continue;
-        if (v.standing) stuck_ = v.error;
+        if (v.standing) {
+            stuck_ = v.error;
+            stuck_run_ = v.run;
+        }
         in.verdicts[in.next_verdict++ % in.verdicts.size()] = v;
     }
     if (!exists_ || !in.player || fault_ != ErrorId::none) return;
@@ -299,7 +320,7 @@ void PathRun::look() noexcept {
         in.q = run.to;
         in.velocity = in.acceleration = {};
     } else {
-        in.at = way_point(run.section, run, s, in.arm.get(), in.members, in.q);
+        in.at = way_point(run.section, run, s, in.arm.get(), in.members, in.q, 2);
         if (!in.at.miss.ok()) {
             fault_ = ErrorId::out_of_reach;
             return;

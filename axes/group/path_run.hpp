@@ -36,6 +36,8 @@ public:
     /// The members stand where they are; whatever was on the way is forgotten. `factors` from now on. False: not now, ask again in the next cycle.
     /// `caps`: the members keep below these too, where they are above 0.
     bool restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps = nullptr) noexcept;
+    /// What was planned is inside the limits that the members have now.
+    [[nodiscard]] bool fits(const GroupMembers& members) const noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
     /// False: not now.
     /// `pressed`: where a jog began, by place.
@@ -77,8 +79,8 @@ public:
     /// At rest where the way of command() ends.
     [[nodiscard]] bool arrived() const noexcept { return arrived_; }
     [[nodiscard]] bool stops() const noexcept { return stops_; }
-    /// The reason why it has come to rest before the end and finds no way on; none: it has not.
-    [[nodiscard]] ErrorId stuck() const noexcept { return stuck_; }
+    /// The reason why it has come to rest before the end and finds no way on, or none into the next run of a stored path; none: it has not.
+    [[nodiscard]] ErrorId stuck() const noexcept;
     /// The set-point could not follow the way: out of reach, which the check before the start excludes. G-021
     [[nodiscard]] ErrorId fault() const noexcept { return fault_; }
 
@@ -119,6 +121,7 @@ private:
     bool exists_ = false, arrived_ = false;
     bool stops_ = false;  // the goal is rest, not the end
     ErrorId stuck_ = ErrorId::none, fault_ = ErrorId::none;
+    std::uint32_t stuck_run_ = 0;
     PathLimiter limiter_ = PathLimiter::none;
     std::uint8_t narrowest_ = 0;
 };

@@ -8,7 +8,7 @@ namespace {
 std::array<double, 3> numbers(const Eigen::Vector3d& v) noexcept { return {v.x(), v.y(), v.z()}; }
 
 void through(WayPoint& w, const PathSection& section, const RunSection& at, const PathPoint& point, const Kinematics& arm,
-             const MemberVector& near) noexcept {
+             const MemberVector& near, int orders) noexcept {
     const Pose& tool = at.carried.tool;
     const PosePoint pose = pose_point(point, section.chart);
     const AxisSolution stand = arm.inverse(pose_of(pose.position, pose.orientation), tool, at.configuration, joints_of(near));
@@ -19,7 +19,7 @@ void through(WayPoint& w, const PathSection& section, const RunSection& at, cons
         along.position[k] = numbers(pose.linear[k]);
         along.turn[k] = numbers(pose.angular[k]);
     }
-    const AxisDerivatives d = arm.derivatives(stand.axes, tool, along);
+    const AxisDerivatives d = arm.derivatives(stand.axes, tool, along, orders);
     w.q = members_of(stand.axes);
     w.first = members_of(d.of[0]);
     w.second = members_of(d.of[1]);
@@ -30,11 +30,11 @@ void through(WayPoint& w, const PathSection& section, const RunSection& at, cons
 }  // namespace
 
 WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, std::size_t members,
-                   const MemberVector& near) noexcept {
+                   const MemberVector& near, int orders) noexcept {
     WayPoint w;
     const PathPoint point = section.at(s);
     if (at.through_arm) {
-        through(w, section, at, point, *arm, near);
+        through(w, section, at, point, *arm, near, orders);
         return w;
     }
     for (std::size_t i = 0; i < members; ++i) {

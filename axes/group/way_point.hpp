@@ -34,9 +34,9 @@ struct WayPoint {
     Miss miss;
 };
 
-/// `near`: the members close by, by which turns and free joints are chosen.
+/// `near`: the members close by, by which turns and free joints are chosen. `orders`: derivatives that are wanted, 1 to 3; further ones may be 0.
 [[nodiscard]] WayPoint way_point(const PathSection& section, const RunSection& at, double s, const Kinematics* arm, std::size_t members,
-                                 const MemberVector& near) noexcept;
+                                 const MemberVector& near, int orders = 3) noexcept;
 
 [[nodiscard]] inline Joints joints_of(const MemberVector& members) noexcept {
     Joints joints{};

@@ -59,14 +59,15 @@ struct Frame {
 template <class S>
 [[nodiscard]] constexpr Triple<S> rotated(const Frame<S>& f, const Triple<double>& v) noexcept {
     Triple<S> r;
-    for (std::size_t i = 0; i < 3; ++i) r[i] = f.axis[0][i] * S(v[0]) + f.axis[1][i] * S(v[1]) + f.axis[2][i] * S(v[2]);
+    for (std::size_t i = 0; i < 3; ++i) r[i] = f.axis[0][i] * v[0] + f.axis[1][i] * v[1] + f.axis[2][i] * v[2];
     return r;
 }
 template <class S>
 [[nodiscard]] constexpr Frame<S> operator*(const Frame<S>& outer, const Frame<double>& inner) noexcept {
     Frame<S> r;
     for (std::size_t k = 0; k < 3; ++k) r.axis[k] = rotated(outer, inner.axis[k]);
-    r.origin = plus(outer.origin, S(1), rotated(outer, inner.origin));
+    const Triple<S> way = rotated(outer, inner.origin);
+    for (std::size_t i = 0; i < 3; ++i) r.origin[i] = outer.origin[i] + way[i];
     return r;
 }
 

@@ -2,30 +2,10 @@
 
 #include <algorithm>
 
+#include "axes/kinematics/soundness.hpp"
+
 namespace taktwerk::axes {
 namespace {
-
-/// An orientation this far from length 1 is a mistake; nearer, it is rounding and is scaled.
-constexpr double length_rounding = 1e-6;
-
-/// What is larger is no place of a machine, in whatever unit; what is computed from it would be infinite.
-constexpr double largest = 1e12;
-
-bool sound(const Pose& pose) noexcept {
-    for (const double v : pose.position)
-        if (!(std::abs(v) <= largest)) return false;
-    return std::abs(orientation_of(pose).norm() - 1) < length_rounding;
-}
-
-Frame<double> frame_of_scaled(Pose pose) noexcept {
-    const double scale = 1 / orientation_of(pose).norm();
-    for (double& v : pose.orientation) v *= scale;
-    return frame_of(pose);
-}
-
-bool finite(const Joints& joints) noexcept {
-    return std::all_of(joints.begin(), joints.end(), [](double v) { return std::abs(v) <= largest; });
-}
 
 constexpr double whole_turn = 2 * std::numbers::pi;
 

@@ -34,6 +34,13 @@ struct AxisSolution {
     [[nodiscard]] bool ok() const noexcept { return miss.ok(); }
 };
 
+/// Where the tool's point is, and how fast: velocity and angular velocity in the machine.
+struct MovingPose {
+    Pose pose;
+    std::array<double, 6> velocity{};
+    Miss miss;
+};
+
 struct AllAxisSolutions {
     std::array<AxisSolution, 8> at{};
     int count = 0;
@@ -46,7 +53,7 @@ struct PathDerivatives {
     std::array<std::array<double, 3>, 3> position{};
     std::array<std::array<double, 3>, 3> turn{};
 };
-/// First, second and third derivative of the axes by the same parameter.
+/// First, second and third derivative of the axes by the same parameter; those that were not asked for are 0.
 struct AxisDerivatives {
     std::array<Joints, 3> of{};
     Miss miss;
@@ -74,7 +81,11 @@ public:
 
     /// Velocity and angular velocity of the tool's point, in the machine, for those of the axes. Columns of joints that there are not are 0.
     [[nodiscard]] Jacobian jacobian(const Joints& axes, const Pose& tool) const noexcept;
-    [[nodiscard]] AxisDerivatives derivatives(const Joints& axes, const Pose& tool, const PathDerivatives& path) const noexcept;
+    /// `orders`: 1 to 3.
+    [[nodiscard]] AxisDerivatives derivatives(const Joints& axes, const Pose& tool, const PathDerivatives& path,
+                                              int orders = 3) const noexcept;
+    /// forward(), and with it what jacobian() makes of `velocities`; in one pass.
+    [[nodiscard]] MovingPose moving(const Joints& axes, const Joints& velocities, const Pose& tool) const noexcept;
 
     [[nodiscard]] Configuration configuration(const Joints& axes) const noexcept;
     [[nodiscard]] Singularity singularity(const Joints& axes) const noexcept;

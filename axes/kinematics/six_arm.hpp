@@ -25,6 +25,8 @@ public:
     [[nodiscard]] Frame<S> forward(const std::array<S, max_joints>& joints) const noexcept {
         return chain_.forward(joints);
     }
+    /// The joints' frames, and the flange; what JointChain makes velocities of.
+    [[nodiscard]] std::array<Frame<double>, 7> frames(const Joints& joints) const noexcept { return chain_.frames(joints); }
     [[nodiscard]] Jacobian jacobian(const Joints& joints) const noexcept { return JointChain::jacobian(chain_.frames(joints)); }
     /// All ways. Without a closed form: those that Newton's method reached from `near` and from the
     /// neighbour's, each once; there may be more.

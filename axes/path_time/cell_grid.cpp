@@ -17,7 +17,10 @@ constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
 constexpr double rest_share = 0.2;  // of the way with jerk that the piece at rest takes
 // That piece cannot be cut, and who wants to stand waits for its end: it lasts no longer than this at a beginning.
 constexpr double longest_start = 0.012;  // s
-constexpr double cells_of_braking = 40;  // to a lowered velocity
+// Nor is it shorter than this part of the run, however slow that is: cells have to be longer than a place's last digits.
+constexpr double shortest_rest = 1e-9;
+constexpr std::size_t most_cells = 200'000;  // a run that asks for more is not planned
+constexpr double cells_of_braking = 40;      // to a lowered velocity
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
 constexpr double fewer = 2.7;
@@ -107,7 +110,7 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
         const double a = std::min(l.acceleration, l.deceleration);
         way = std::min(way, a * a * a / (6 * l.jerk * l.jerk));
         way = std::min(way, std::sqrt(l.velocity / l.jerk) * l.velocity / 6);
-        return std::min(rest_share * way, room / 3);
+        return std::min(std::max(rest_share * way, shortest_rest * whole), room / 3);
     };
     const bool from_rest = task.velocity <= 0;
     start = {};
@@ -115,7 +118,7 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     if (from_rest) {
         const double jerk = along_limits(curve.at(task.from, CurveSide::after), limits, 1).jerk;
         start.rest_length = std::min(rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]),
-                                     jerk * longest_start * longest_start * longest_start / 6);
+                                     std::max(jerk * longest_start * longest_start * longest_start / 6, shortest_rest * whole));
     } else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
@@ -161,7 +164,7 @@ void CellGrid::add_nodes() {
         if (i + 2 == breaks.size()) b -= end.rest_length;
         const std::size_t first = nodes.size();
         double s = a;
-        while (s < b - 1e-9 * (b - a)) {
+        while (s < b - 1e-9 * (b - a) && nodes.size() < most_cells) {
             nodes.push_back(s);
             const double step = size_at(s, station);
             std::size_t ahead = station;

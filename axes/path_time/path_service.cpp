@@ -13,26 +13,35 @@ constexpr double first_share = 0.98;  // of the limits, that a halt is tried wit
 constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
 constexpr int most_stops = 12;
 constexpr double furthest_border = 0.25;  // s behind the first one
+constexpr double least_factor = 1e-6;     // what is slower stands
 
 }  // namespace
 
-/// The first border between pieces that the cycle does not reach before `lead`; the number of pieces where that is their end.
-int PathService::border(const StretchProgress& at) {
+/// The first border between pieces that the cycle does not reach before `lead`, and behind `tried`; the number of pieces where that is their
+/// end. -1: not so far that a new wish would wait for it.
+int PathService::border(const StretchProgress& at, int tried) const {
     const auto& pieces = active_.plan.pieces;
     if (active_.id == 0 || at.stretch != active_.id) return static_cast<int>(pieces.size());
     double time = 0;
     std::size_t i = static_cast<std::size_t>(at.piece) + 1;
     while (i < pieces.size() && time < lead_) time += pieces[i++].duration;
-    // Where nothing was found from the borders before, further on; but not so far that a new wish would wait for it.
+    if (i + 1 >= pieces.size()) return static_cast<int>(pieces.size());
     time = 0;
-    for (std::size_t first = i; i < first + static_cast<std::size_t>(skip_) && i < pieces.size(); time += pieces[i++].duration)
-        if (time > furthest_border) {
-            skip_ = 0;
-            i = first;
-            break;
-        }
+    for (; static_cast<int>(i) <= tried && i < pieces.size(); time += pieces[i++].duration)
+        if (time > furthest_border) return -1;
     // The last piece is the end of braking: nothing else leads from there but to rest.
     return static_cast<int>(i + 1 >= pieces.size() ? pieces.size() : i);
+}
+
+bool PathService::failed_before(const Failed& now) const noexcept {
+    return failed_.any && failed_.stand == now.stand && failed_.stretch == now.stretch && failed_.revision == now.revision &&
+           failed_.to == now.to && failed_.factor == now.factor;
+}
+
+PathAnswer PathService::nothing_found(const Failed& now, bool at_rest) noexcept {
+    failed_ = now;
+    failed_.any = true;
+    return at_rest ? PathAnswer::stuck : PathAnswer::kept;
 }
 
 void PathService::send(int at_piece, const RunTask& task, bool stands, std::uint32_t revision) {
@@ -64,6 +73,7 @@ bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthe
         task.halt_share = share;
         const bool goes = task.to > task.from + 1e-12 * std::fabs(task.from);  // or what runs comes to rest as soon
         if (!goes || !(task.to < furthest)) return false;
+        ++tries_;
         planner_.plan(curve, limits_, task, plan_, former);
         if (plan_.found) return true;
     }
@@ -81,13 +91,16 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         }
         exchange_.was_taken();
         std::swap(active_, sent_);
-        skip_ = 0;
     }
     const StretchProgress at = exchange_.progress();
-    const bool stand = wish.motion == PathWish::Motion::stand || wish.velocity_factor <= 0;
-    if (stand != stood_) skip_ = 0;  // where no other motion was found a halt may well be
-    stood_ = stand;
-    const int begin = border(at);
+    const bool stand = wish.motion == PathWish::Motion::stand || !(wish.velocity_factor >= least_factor);
+    Failed now{.stand = stand, .stretch = active_.id, .revision = wish.revision};
+    now.to = stand ? 0 : final_end;
+    now.factor = stand ? 0 : std::min(wish.velocity_factor, 1.0);
+    const bool again = failed_before(now);
+    const int begin = border(at, again ? failed_.border : -1);
+    if (begin < 0) return PathAnswer::kept;
+    now.border = begin;
     const bool at_rest = begin >= static_cast<int>(active_.plan.pieces.size());
     RunTask task;
     task.from = at_rest ? active_.to : active_.plan.pieces[static_cast<std::size_t>(begin)].begin;
@@ -106,10 +119,7 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     }
     if (stand) {
         if (at_rest || active_.stands) return PathAnswer::nothing_new;
-        if (!plan_halt(curve, task, active_.to, former)) {
-            ++skip_;
-            return PathAnswer::kept;
-        }
+        if (!plan_halt(curve, task, active_.to, former)) return nothing_found(now, false);
         task.to = plan_.shape.end;
         send(begin, task, true, wish.revision);
         return PathAnswer::offered;
@@ -118,16 +128,14 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     const bool same = !active_.stands && task.velocity_factor == active_.factor && wish.revision == active_.revision &&
                       std::fabs(task.to - active_.to) <= 1e-12 * std::fabs(task.to);
     if ((!at_rest && same) || !(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
+    if (again && failed_.border >= begin) return PathAnswer::stuck;  // at rest, and it was tried
+    ++tries_;
     planner_.plan(curve, limits_, task, plan_, former);
     for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > TimeStretch::most_pieces; ++i) {
         task.to = task.from + (task.to - task.from) / 2;
         planner_.plan(curve, limits_, task, plan_, former);
     }
-    if (!plan_.found || plan_.pieces.size() > TimeStretch::most_pieces) {
-        if (at_rest) return PathAnswer::stuck;
-        ++skip_;
-        return PathAnswer::kept;
-    }
+    if (!plan_.found || plan_.pieces.size() > TimeStretch::most_pieces) return nothing_found(now, at_rest);
     send(begin, task, false, wish.revision);
     return PathAnswer::offered;
 }

@@ -16,7 +16,7 @@ namespace taktwerk::axes {
 struct PathWish {
     enum class Motion : std::uint8_t { stand, go };
     Motion motion = Motion::go;
-    double velocity_factor = 1;  ///< [0, 1]; 0 stands
+    double velocity_factor = 1;  ///< [0, 1]; below a millionth it stands
     std::uint32_t revision = 0;  ///< another one: the curve's limits have changed, what runs is planned anew
 };
 
@@ -45,6 +45,9 @@ public:
     [[nodiscard]] std::uint32_t late() const noexcept { return late_; }
     [[nodiscard]] const RunPlan& last_plan() const noexcept { return plan_; }
 
+    /// Plans tried so far, found or not: what it costs.
+    [[nodiscard]] std::uint32_t tries() const noexcept { return tries_; }
+
     static constexpr double most_lead = 0.5;  // s
     [[nodiscard]] double lead() const noexcept { return lead_; }
 
@@ -59,7 +62,18 @@ private:
         RunPlan plan;
     };
 
-    [[nodiscard]] int border(const StretchProgress& at);
+    /// What was asked for where nothing was found: as long as it is the same, planning again from there finds the same.
+    struct Failed {
+        bool any = false;
+        bool stand = false;
+        std::uint32_t stretch = 0, revision = 0;
+        int border = 0;  // the furthest one tried
+        double to = 0, factor = 1;
+    };
+
+    [[nodiscard]] int border(const StretchProgress& at, int tried) const;
+    [[nodiscard]] bool failed_before(const Failed& now) const noexcept;
+    PathAnswer nothing_found(const Failed& now, bool at_rest) noexcept;
     bool plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former);
     void send(int at_piece, const RunTask& task, bool stands, std::uint32_t revision);
 
@@ -70,8 +84,8 @@ private:
     RunPlan plan_;
     Sent active_, sent_;
     bool pending_ = false;
-    int skip_ = 0;        // borders to leave out after one from which nothing was found
-    bool stood_ = false;  // what was wanted last
+    Failed failed_;
+    std::uint32_t tries_ = 0;
     std::uint32_t ids_ = 0;
     std::uint32_t late_ = 0;
 };

@@ -15,8 +15,12 @@ constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
 constexpr double slow_share = 0.02;     // of v2: what goes on where a former plan stopped
 constexpr double longest_piece = 0.02;  // s
+constexpr double longest_run = 1e12;    // s: what takes longer is no motion
 constexpr double most_parts = 2500;     // that pieces are cut into
-constexpr double braking_share = 0.7;   // of the deceleration, to a lowered velocity
+constexpr double braking_share = 0.7;   // of the deceleration and the jerk, to a lowered velocity
+constexpr double guessed_share = 0.75;  // the same where the search begins: a little below
+constexpr double guessed_below = 0.97;  // of that velocity
+constexpr double over_ramp = 1.0005;    // of v2 on that braking: what cells cannot follow
 constexpr int window = 192;             // cells that are solved and stay
 constexpr int look_ahead = 48;          // cells behind them that are solved with them, at least: as far as braking would reach
 constexpr int beside = 10;              // cells on both sides that are solved again with one that was beyond a limit
@@ -66,7 +70,8 @@ void RunPlanner::add_cell(int cell) {
         if (!shared) {
             // Above a lowered velocity factor a moving beginning may be; it is left as soon as the limits allow.
             const double wanted = p.path.velocity * task_.velocity_factor;
-            if (moving && task_.velocity_factor < 1 && wanted < unlimited) problem_.add_soft_cap(wanted * wanted);
+            if (moving && task_.velocity_factor < 1 && wanted < unlimited)
+                problem_.add_soft_cap(std::max(wanted * wanted, ramp_.empty() ? 0 : ramp_[3 * c + static_cast<std::size_t>(place)]));
             if (cell == 0 && place == CellPlace::begin)
                 square = std::min(square, rest_square(task_.from, grid_.start.rest_length, CurveSide::after));
             if (cell + 1 == problem_.cells() && place == CellPlace::end)
@@ -100,12 +105,32 @@ void RunPlanner::add_cell(int cell) {
 void RunPlanner::make_problem() {
     check_.sample(*curve_, limits_, grid_.nodes, grid_.breaks);
     problem_.begin(grid_.nodes, grid_.start, grid_.end, untouched);
+    make_ramp();
     for (int i = 0; i < problem_.cells(); ++i) add_cell(i);
     for (int i = 0; i < problem_.cells(); ++i) {
         const CellShare& share = shares_[static_cast<std::size_t>(i)];
         if (share.velocity < untouched.velocity || share.acceleration < untouched.acceleration || share.jerk < untouched.jerk)
             push_share(i);
     }
+}
+
+/// A lowered velocity is come to on a ramp. Without one the search would be below it as soon as can be, with all of the deceleration still on it, and
+/// pass far below.
+void RunPlanner::make_ramp() {
+    ramp_.clear();
+    if (task_.velocity <= 0 || task_.velocity_factor >= 1) return;
+    const Braking braking = braking_to_factor(1, braking_share);
+    const double way = braking.way();
+    if (!(way > 0)) return;
+    BrakingByWay by_way(braking);
+    const auto square = [&](double s) { return s < task_.from + way ? over_ramp * std::pow(by_way.velocity(s - task_.from), 2) : 0; };
+    double first = square(grid_.nodes.front());
+    for (std::size_t i = 0; i + 1 < grid_.nodes.size() && first > 0; ++i) {
+        const double middle = square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2), last = square(grid_.nodes[i + 1]);
+        ramp_.insert(ramp_.end(), {first, last > 0 ? std::max(2 * middle - (first + last) / 2, middle) : middle, last});
+        first = last;
+    }
+    ramp_.resize(3 * (grid_.nodes.size() - 1), 0.0);
 }
 
 /// What the cell may use, told to all places that it has a part of.
@@ -179,13 +204,12 @@ void RunPlanner::brake() {
     }
 }
 
-/// To a lowered velocity factor, where the beginning is above it.
-Braking RunPlanner::braking_to_factor() const {
+/// To this part of a lowered velocity, where the beginning is above it, with this share of the limits.
+Braking RunPlanner::braking_to_factor(double part, double share) const {
     const TimedCurvePoint p = curve_->at(task_.from, CurveSide::after);
     const AlongLimits l = along_limits(p, limits_, 1);
     const double wanted = std::min(l.velocity, p.path.velocity) * task_.velocity_factor;
-    return {task_.velocity, task_.acceleration, braking_share * l.deceleration, braking_share * l.jerk,
-            std::min(0.7 * wanted, task_.velocity)};
+    return {task_.velocity, task_.acceleration, share * l.deceleration, share * l.jerk, std::min(part * wanted, task_.velocity)};
 }
 
 /// From a moving state: the cells of the former plan as long as it does not brake for its end for good, and its v2 as the first guess. Where
@@ -222,7 +246,7 @@ void RunPlanner::take_over(const RunShape& former) {
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
     // A lowered velocity factor: braking to what is allowed.
-    const Braking braking = braking_to_factor();
+    const Braking braking = braking_to_factor(guessed_below, guessed_share);
     BrakingByWay by_way(braking);
     const bool slower = task_.velocity_factor < former.velocity_factor;
     const auto braked_square = [&](double s) { return slower ? std::pow(by_way.velocity(s - task_.from), 2) : unlimited; };
@@ -335,7 +359,7 @@ void RunPlanner::slow_down(const LimitUse& use) {
     for (double& middle : middles_) middle *= share;
 }
 
-void RunPlanner::make_pieces(RunPlan& out) const {
+bool RunPlanner::make_pieces(RunPlan& out) const {
     const auto& nodes = grid_.nodes;
     out.pieces.clear();
     double time = 0;
@@ -353,6 +377,7 @@ void RunPlanner::make_pieces(RunPlan& out) const {
     if (begins > 0) add(TimePiece::rest(TimePiece::Kind::from_rest, task_.from, begins, shape.squares.front()));
     double whole = 0;
     for (std::size_t c = 0; c < middles_.size(); ++c) whole += (nodes[c + 1] - nodes[c]) / std::sqrt(middles_[c]);
+    if (!(whole < longest_run)) return false;  // nor is what is no number
     const double longest = std::max(longest_piece, whole / most_parts);
     for (std::size_t c = 0; c < middles_.size(); ++c) {
         const double length = nodes[c + 1] - nodes[c], last = problem_.node(static_cast<int>(c) + 1, middles_);
@@ -377,6 +402,7 @@ void RunPlanner::make_pieces(RunPlan& out) const {
     out.shape.end = task_.to;
     out.shape.velocity_factor = task_.velocity_factor;
     out.shape.coarse = grid_.coarse;
+    return true;
 }
 
 bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
@@ -402,6 +428,46 @@ bool RunPlanner::sweep(SpeedGuess guess, RunPlan& out) {
         }
         if (!solve({first, last}, first == 0 || guess != SpeedGuess::outside ? guess : SpeedGuess::inside, this, out)) return false;
         first = last == n ? n : stays;
+    }
+    return true;
+}
+
+/// What a search gains is compared with the time of all that it looks at. Beside a long cruise a slow moment behind the braking to a lowered velocity
+/// counts nothing there: so that is looked at by itself.
+bool RunPlanner::settle_braking(RunPlan& out) {
+    if (task_.brake_way <= 0) return true;
+    for (const double share : {20.0, 4.0, 1.5}) {
+        const auto behind = std::upper_bound(grid_.nodes.begin(), grid_.nodes.end(), task_.from + share * task_.brake_way);
+        const int last = std::min(static_cast<int>(behind - grid_.nodes.begin()), problem_.cells());
+        if (last < problem_.cells() && !solve({0, last}, SpeedGuess::near, nullptr, out)) return false;
+    }
+    return true;
+}
+
+/// The same of the ramps at both ends of a long run: some tenths of a second that are lost there are little of it, but much to who waits for it to move.
+bool RunPlanner::settle_ramps(RunPlan& out) {
+    if (grid_.coarse) return true;
+    const int n = problem_.cells();
+    double whole = 0;
+    for (int c = 0; c < n; ++c)
+        whole += (grid_.nodes[static_cast<std::size_t>(c) + 1] - grid_.nodes[static_cast<std::size_t>(c)]) /
+                 std::sqrt(middles_[static_cast<std::size_t>(c)]);
+    const auto way_of_ramp = [&](double s, CurveSide side) {
+        constexpr double many = 20;  // ramps in a long run
+        const AlongLimits l = along_limits(curve_->at(s, side), limits_, task_.velocity_factor);
+        const double time = l.velocity / std::min(l.acceleration, l.deceleration) + l.acceleration / l.jerk;
+        return whole > many * time ? time * l.velocity : 0.0;
+    };
+    const double up = from_rest() ? way_of_ramp(task_.from, CurveSide::after) : 0, down = way_of_ramp(task_.to, CurveSide::before);
+    const auto cell_at = [&](double s) {
+        const auto behind = std::upper_bound(grid_.nodes.begin(), grid_.nodes.end(), s);
+        return std::clamp(static_cast<int>(behind - grid_.nodes.begin()), 1, n);
+    };
+    // From many ramps to some: what lies beside is as it was found before.
+    for (const double share : {64.0, 8.0, 2.0}) {
+        const CellRange first{0, cell_at(task_.from + share * up)}, last{cell_at(task_.to - share * down) - 1, n};
+        if (up > 0 && first.last < n && !solve(first, SpeedGuess::near, nullptr, out)) return false;
+        if (down > 0 && last.first > 0 && last.first < n && !solve(last, SpeedGuess::near, nullptr, out)) return false;
     }
     return true;
 }
@@ -446,7 +512,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     split_.clear();
     splits_left_ = split_rounds;
     if (former != nullptr && task.velocity > 0 && task.halt_share <= 0 && task.velocity_factor < former->velocity_factor) {
-        const double way = braking_to_factor().way();
+        const double way = braking_to_factor(guessed_below, braking_share).way();
         if (way > 0 && way < 0.9 * (task.to - task.from)) task_.brake_way = way;
     }
     grid_.make(*curve_, limits_, task_,
@@ -464,7 +530,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     }
     uses_.assign(middles_.size(), {});
     ++out.rounds;
-    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out);
+    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out) && settle_braking(out) && settle_ramps(out);
     out.use = verify({0, problem_.cells()});
     out.found = solved && mend(out);
     LimitUse use;
@@ -479,7 +545,8 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     }
     out.use = use;
     out.cells = out.planned = problem_.cells();
-    make_pieces(out);
+    out.pieces.clear();
+    out.found = out.found && make_pieces(out);
 }
 
 /// The first cell of `former` that a further end has an influence on; 0 where there is none before it.

@@ -57,18 +57,22 @@ private:
     void first_guess();
     void take_over(const RunShape& former);
     void brake();
-    [[nodiscard]] Braking braking_to_factor() const;
+    void make_ramp();
+    [[nodiscard]] Braking braking_to_factor(double part, double share) const;
     bool sweep(SpeedGuess guess, RunPlan& out);
     bool solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out);
     void come_near(const CellRange& cells, const std::vector<double>& middles) override;
     [[nodiscard]] CellUse use_of_cell(std::size_t cell);
     LimitUse verify(const CellRange& range);
+    bool settle_braking(RunPlan& out);
+    bool settle_ramps(RunPlan& out);
     bool mend(RunPlan& out);
     void push_share(int cell);
     void split_cells();
     void slow_down(const LimitUse& use);
     [[nodiscard]] double rest_square(double at, double length, CurveSide side) const;
-    void make_pieces(RunPlan& out) const;
+    /// False: it would last too long to be a motion.
+    [[nodiscard]] bool make_pieces(RunPlan& out) const;
     [[nodiscard]] bool from_rest() const noexcept { return grid_.start.rest_length > 0; }
     /// What the path's velocity limit is times where nothing may cross it.
     [[nodiscard]] double hard_factor() const noexcept { return task_.velocity > 0 ? 1 : task_.velocity_factor; }
@@ -80,8 +84,9 @@ private:
     CellCheck check_;
     SpeedProblem problem_;
     std::vector<double> middles_;
-    std::vector<double> reach_;      // of braking, from each cell
-    std::vector<LimitUse> uses_;     // of the cells, as verified
+    std::vector<double> ramp_;    // v2 on the way down to a lowered velocity, three a cell as the problem has places; empty: there is none
+    std::vector<double> reach_;   // of braking, from each cell
+    std::vector<LimitUse> uses_;  // of the cells, as verified
     std::vector<CellShare> shares_;  // what share of each limit a cell may use
     std::vector<int> beyond_;        // cells that use more than they may
     std::vector<int> split_;

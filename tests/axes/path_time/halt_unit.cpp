@@ -132,5 +132,40 @@ TEST(Halt, ALoweredOverrideIsComeToSoon) {
     EXPECT_GT(lowered, 50);
 }
 
+// It is come to from above and kept: nobody who slows a machine down expects that it nearly stands for a moment. A ramp up may go on until its
+// acceleration is gone.
+TEST(Halt, ALoweredOverrideIsNotUndershot) {
+    int lowered = 0;
+    for (const double velocity : {5.0, 20.0, 100.0})
+        for (const double length : {20.0, 100.0, 1000.0})
+            for (const double factor : {0.05, 0.4, 0.7, 0.9})
+                for (const int when : {100, 160, 330, 800}) {
+                    Line line(length, velocity);
+                    const PathWish go, slower{.velocity_factor = factor};
+                    for (int i = 0; i < when; ++i) line.step(go);
+                    const double wanted = factor * velocity, way = 1.5 * velocity * least_time(velocity, 0) + 0.1 * velocity;
+                    if (line.player.now().velocity < wanted || line.player.now().acceleration < -1) continue;
+                    ++lowered;
+                    double before = 1e9, slowest = 1e9, top = 0;
+                    int there = 0;  // cycles
+                    while (there < 300 && line.player.now().s + way < length) {
+                        line.step(slower);
+                        const auto& now = line.player.now();
+                        there += there > 0 || now.velocity <= wanted * (1 + 2e-3) ? 1 : 0;
+                        // In a cruise velocity may differ by a thousandth: down is where it has left its top.
+                        top = std::max(top, now.velocity);
+                        if (now.velocity < 0.98 * top) before = std::min(before, now.velocity);
+                        ASSERT_LE(now.velocity, std::max(before, wanted) * (1 + 2e-3))
+                            << "it rises again; " << velocity << " u/s over " << length << " after " << when << " to " << factor;
+                        slowest = std::min(slowest, now.velocity / wanted);
+                    }
+                    if (length > 5 * way) {
+                        ASSERT_GT(there, 0) << velocity << " u/s over " << length << " after " << when << " to " << factor;
+                    }
+                    ASSERT_GE(slowest, 0.99) << velocity << " u/s over " << length << " after " << when << " to " << factor;
+                }
+    EXPECT_GT(lowered, 40);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes

@@ -49,6 +49,37 @@ TEST(RunPlan, LineOfOneAxisAgainstTheAxisPlanner) {
     }
 }
 
+// Minutes to a day: every limit holds in every piece, the plan fits into a stretch, costs no more cells than a short one, and the ramps are as quick as
+// without a cruise between them. By hand: 5 u/s with 10,000 u/s3 are come to in 2 sqrt(5/10,000) = 0.045 s.
+TEST(RunPlan, LongRunsKeepEveryLimitAndCostNoMore) {
+    const std::vector<PathAxisLimits> limits{{5, 1000, 10'000}};
+    for (const double seconds : {60.0, 600.0, 3600.0, 86'400.0}) {
+        const Path path = line_path(5 * seconds, 0);
+        const PathCurve curve(path, 1);
+        const RunPlan plan = plan_of(path, limits);
+        EXPECT_LE(plan.pieces.size(), 3000U) << seconds;
+        EXPECT_LE(plan.cells, 400) << seconds;
+        EXPECT_LE(plan.steps, 400) << seconds;
+        EXPECT_GE(plan.duration, seconds) << seconds;
+        EXPECT_LE(plan.duration, seconds * 1.002 + 0.1) << seconds;
+        LimitUse use;
+        double longest = 0, after_a_tenth = 0;
+        for (const TimePiece& piece : plan.pieces) {
+            longest = std::max(longest, piece.duration);
+            for (int k = 0; k <= 24; ++k) {
+                const PathMotion m = piece.at(piece.duration * k / 24);
+                use.widen(limit_use(curve.at(m.s, CurveSide::after), limits, 1, m));
+                if (piece.begin_time + piece.duration * k / 24 <= 0.1) after_a_tenth = m.velocity;
+            }
+        }
+        EXPECT_LE(use.velocity, 1 + 1e-6) << seconds;
+        EXPECT_LE(use.acceleration, 1 + 1e-6) << seconds;
+        EXPECT_LE(use.jerk, 1 + 1e-3) << seconds;
+        EXPECT_LE(longest, std::max(0.02, plan.duration / 2500) * 1.001) << "who wants to stand waits for the end of one, " << seconds;
+        EXPECT_GT(after_a_tenth, 4.5) << seconds;
+    }
+}
+
 // Along (0.6, 0.8) the second axis limits: 100/0.8.
 TEST(RunPlan, LineIsLimitedByItsSlowestAxis) {
     const RunPlan plan = plan_of(line_path(60, 80), {{100, 1000, 20000}, {100, 1000, 20000}});

@@ -49,7 +49,7 @@ Outcome draw(const std::string& text, std::size_t served_every) {
 }
 
 // T-05, T-06, T-07. By hand: 100 mm at F3000 are 2 s; 50 mm/s are reached with 10000 mm/s3 in 2 sqrt(50/10000) = 0.1414 s over half the way of the feed, as braking is: 2.1414 s,
-// and (2.1414 - 2 * 0.1414) / 2.1414 = 86.8 % of it at the feed. The circle itself allows sqrt(1000 * 15.9) = 126 mm/s.
+// and (2.1414 - 2 * 0.1414) / 2.1414 = 86.8 % of it at the feed: 90 % cannot be. Above 99 % of it, as is counted here, are sqrt(2 * 0.5/10000) = 0.01 s more at each end: at most 87.7 %. The circle itself allows sqrt(1000 * 15.9) = 126 mm/s.
 TEST(GcodePath, TenThousandPiecesKeepTheirFeed) {
     const auto out = draw(circle_of_chords("G64 P0.01"), 1);
     EXPECT_GE(out.seconds, 2.1413);
@@ -58,7 +58,8 @@ TEST(GcodePath, TenThousandPiecesKeepTheirFeed) {
     RecordProperty("at_feed", fmt::format("{:.3f}", out.at_feed));
     RecordProperty("limited", fmt::format("{:.3f}", out.limited));
     fmt::print("{:.3f} s, at the feed {:.1f} %, off {:.6f} mm\n", out.seconds, 100 * out.at_feed, out.worst);
-    EXPECT_GT(out.at_feed, 0.86);
+    EXPECT_GT(out.at_feed, 0.87);
+    EXPECT_LT(out.at_feed, 0.8774);
 }
 
 // The planner comes every 40 cycles only: the same corners, later.
