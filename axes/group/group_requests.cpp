@@ -104,6 +104,7 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     if (is_administrative(command.kind) && !is_setting(command.kind)) return ErrorId::none;  // set_position() says it
     if (is_setting(command.kind)) {
         if (const auto error = refuse_equipment(command); error != ErrorId::none) return error;
+        if (const auto error = refuse_track(command); error != ErrorId::none) return error;
         if (command.execution == mcImmediately) return ErrorId::none;
         if (state_ == GroupState::GroupStopping) return ErrorId::state_forbids;
         return queue_.full() ? ErrorId::queue_full : ErrorId::none;
@@ -117,9 +118,12 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
         return command.frame == mcACS ? ErrorId::none : ErrorId::not_supported;
     }
     if (command.kind == GroupCommandKind::jog) {
+        if (const auto track = refuse_track(command); track != ErrorId::none) return track;
         const auto error = refuse_frame(command, config_.kinematics.get(), members_);
         return error != ErrorId::none ? error : GroupJog::refuse(command, view_.jogging_dynamics, members_);
     }
+    if (goes_a_way(command.kind))
+        if (const auto error = refuse_track(command); error != ErrorId::none) return error;
     if (goes_a_way(command.kind))
         if (const auto error = refuse_way(command); error != ErrorId::none) return error;
     return has_place_in_queue(command.kind) && waits(command) && queue_.full() ? ErrorId::queue_full : ErrorId::none;
@@ -137,7 +141,8 @@ Submitted AxisGroup::submit(const GroupCommand& wanted, Owner owner) noexcept {
         case GroupCommandKind::home: answer.id = take_home(command, owner); break;
         case GroupCommandKind::disable: answer.id = take_disable(); break;
         case GroupCommandKind::set_frame:
-        case GroupCommandKind::write_tool: answer = take_setting(command, owner); break;
+        case GroupCommandKind::write_tool:
+        case GroupCommandKind::track_frame: answer = take_setting(command, owner); break;
         case GroupCommandKind::set_position:
         case GroupCommandKind::set_position_relative:
             answer.error = set_position(command, owner);
@@ -188,6 +193,7 @@ CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcep
     begun_ = true;
     fire(GroupEvent::stop);
     if (members_.led()) run_.stop(command.dynamics, Override{});
+    tracking_.release();  // G-087: it ends in space
     return lock_;
 }
 
@@ -209,7 +215,8 @@ CommandId AxisGroup::take_interrupt(const GroupCommand& command) noexcept {
 
 Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexcept {
     const bool on_way = queue_.has_active() && begun_ && goes_a_way(queue_.active().command.kind);
-    if (on_way)
+    const bool follows = members_.led();  // it is interrupted on a frame that moves
+    if (on_way && !follows)
         for (std::size_t i = 0; i < most_members; ++i) {
             if (!members_.has(i)) continue;
             const double place = run_.of(i).position;
@@ -217,7 +224,8 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
                 return {0, ErrorId::not_at_interruption};
         }
     if (queue_.has_active() || queue_.waiting() > 0) {
-        if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
+        if (!follows)
+            if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
         if (on_way) {
             run_.resume(factors());
         } else {
@@ -251,6 +259,7 @@ CommandId AxisGroup::take_disable() noexcept {
     if (members_.led()) {
         disabling_ = id;
         run_.stop({}, Override{});
+        tracking_.release();
     } else {
         fire(GroupEvent::disable);
         queue_.record(id, Outcome::done);
@@ -271,6 +280,7 @@ void AxisGroup::let_go() noexcept {
     lock_ = 0;
     if (members_.led()) {
         halt();
+        tracking_.release();
     } else {
         abort_all();
         if (state_ == GroupState::GroupStopping) fire(GroupEvent::stopped);
@@ -287,6 +297,7 @@ void AxisGroup::shut_down(AxisRef axis) noexcept {
         abort_all();
         lock_ = 0;
         run_.stop({}, Override{});
+        tracking_.release();
     }
     publish();
 }

@@ -37,6 +37,11 @@ struct GroupView {
     bool tool_known = false;
     std::array<double, 6> tool_set{}, tool_actual{}, tool_commanded{}, tool_velocity{}, tool_actual_velocity{};
 
+    // of a frame that moves
+    AxisRef tracked_axis{};  ///< whose way the group goes with; invalid: it does not
+    bool in_sync = false;    ///< it has come up to it
+    double lag = 0;          ///< u of the tool's point that it is behind
+
     // along the path
     double path_velocity = 0, path_acceleration = 0;
     PathLimiter limiter = PathLimiter::none;
