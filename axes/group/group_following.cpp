@@ -27,6 +27,7 @@ ErrorId AxisGroup::refuse_track(const GroupCommand& command) const noexcept {
     using enum GroupCommandKind;
     if (command.kind == track_frame) {
         const auto& track = command.track;
+        if (command.buffer_mode > mcBuffered) return ErrorId::buffer_mode_not_supported;
         if (!track.moves() || !track.master.valid() || members_.contains(track.master)) return ErrorId::invalid_axis;
         if (!has_all_joints(config_.kinematics.get(), members_)) return ErrorId::no_kinematics;
         const auto which = commands_of(*config_.kinematics);

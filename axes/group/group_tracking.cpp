@@ -291,9 +291,7 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
 }
 
 void GroupTracking::publish(GroupView& view) const noexcept {
-    view.tracked_axis = active() ? track_.master : AxisRef{};
-    view.in_sync = in_sync();
-    view.lag = phase_ == Phase::following ? lag_ * inside_->drag : 0;
+    view.track = {active() ? track_.master : AxisRef{}, in_sync(), phase_ == Phase::following ? lag_ * inside_->drag : 0};
 }
 
 }  // namespace taktwerk::axes

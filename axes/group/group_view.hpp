@@ -12,6 +12,13 @@ namespace taktwerk::axes {
 /// What held the path velocity down.
 enum class PathLimiter : std::uint8_t { none, command, axis, override_factor };
 
+/// Of a group on a frame that moves.
+struct TrackView {
+    AxisRef axis{};        ///< whose way it goes with; invalid: it does not
+    bool in_sync = false;  ///< it has come up to it
+    double lag = 0;        ///< u of the tool's point that it is behind
+};
+
 struct GroupView {
     static constexpr std::size_t most_waiting = 16;
 
@@ -37,10 +44,7 @@ struct GroupView {
     bool tool_known = false;
     std::array<double, 6> tool_set{}, tool_actual{}, tool_commanded{}, tool_velocity{}, tool_actual_velocity{};
 
-    // of a frame that moves
-    AxisRef tracked_axis{};  ///< whose way the group goes with; invalid: it does not
-    bool in_sync = false;    ///< it has come up to it
-    double lag = 0;          ///< u of the tool's point that it is behind
+    TrackView track{};
 
     // along the path
     double path_velocity = 0, path_acceleration = 0;

@@ -40,8 +40,8 @@ TEST(GroupTracking, JoinsTheBeltWorksOnItAndLeavesIt) {
     const auto down = rig.give(on_product(line({0, 0, 4}, 30)));
     ASSERT_EQ(down.error, ErrorId::none);
     ASSERT_TRUE(rig.done(down.id)) << static_cast<int>(rig.error_of(down.id));
-    EXPECT_TRUE(rig.view().in_sync);
-    EXPECT_EQ(rig.view().tracked_axis, rig.belt());
+    EXPECT_TRUE(rig.view().track.in_sync);
+    EXPECT_EQ(rig.view().track.axis, rig.belt());
     for (int i = 0; i < 300; ++i) {
         rig.step();
         ASSERT_EQ(rig.view().state, GroupMoving);
@@ -65,7 +65,7 @@ TEST(GroupTracking, JoinsTheBeltWorksOnItAndLeavesIt) {
     EXPECT_NEAR(rig.point()[2], 3, 1e-9);
     rig.run(2);
     EXPECT_EQ(rig.view().state, GroupStandby);
-    EXPECT_FALSE(rig.view().tracked_axis.valid());
+    EXPECT_FALSE(rig.view().track.axis.valid());
 }
 
 // G-088: it stops, goes back, and on at another speed. While its velocity is constant the tool is on the object to 1e-9; while it changes a set-point that is planned
@@ -82,7 +82,7 @@ TEST(GroupTracking, ABeltThatStopsAndReversesIsFollowed) {
         else rig.drive_belt(velocity);
         for (int i = 0; i < 700; ++i) {
             rig.step();
-            ASSERT_TRUE(rig.view().in_sync) << velocity << " in " << i;
+            ASSERT_TRUE(rig.view().track.in_sync) << velocity << " in " << i;
             ASSERT_NO_FATAL_FAILURE(expect_place(rig.on_object(), 0, 0, 4, i > 600 ? 1e-9 : 4.3e-7));
         }
         EXPECT_NEAR(rig.axis(rig.last).set_velocity, velocity, 1e-9);
