@@ -31,7 +31,8 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
       paths_(paths),
       members_(axes),
       run_(config_.kinematics, cycle, paths, config_.millimetre),
-      tracking_(axes, config_.kinematics, config_.millimetre) {
+      tracking_(axes, config_.kinematics, config_.millimetre),
+      slaves_(axes) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;
     equipment_ = config_.equipment;
@@ -147,6 +148,7 @@ void AxisGroup::plan(Instant now, Duration period) noexcept {
             go_on(period);
         }
     }
+    slaves_.step(run_.serial(), run_.along(), period);
     publish();
     if (config_.kinematics) see_tool(view_, config_.kinematics.get(), moves_with_tool() ? run_.carried().tool : equipment_.tool_pose());
 }
@@ -371,6 +373,7 @@ void AxisGroup::publish() noexcept {
     view_.disabling = disabling_;
     see_selection();
     tracking_.publish(view_);
+    slaves_.publish(view_);
     queue_.publish(view_);
 }
 

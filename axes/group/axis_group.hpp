@@ -21,6 +21,7 @@
 #include "axes/group/group_jog.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_queue.hpp"
+#include "axes/group/group_slaves.hpp"
 #include "axes/group/group_state.hpp"
 #include "axes/group/group_tracking.hpp"
 #include "axes/group/path_run.hpp"
@@ -134,6 +135,7 @@ private:
     GroupQueue queue_;
     PathRun run_;
     GroupTracking tracking_;
+    GroupSlaves slaves_;
     JointVector still_{};  // where the members were, had the frame that they follow not moved
     GroupJog jog_;         // while jogs()
     GroupHoming homing_;

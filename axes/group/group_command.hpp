@@ -161,8 +161,16 @@ struct HoldJog {
     JointVector direction{};                ///< -1 to 1 each, as GroupCommand::target
     double velocity = 1, acceleration = 1;  ///< of the jogging dynamics: 0 to 1; above 0 to 1
 };
+/// MC_SyncAxisToGroup: `slave` follows the length of the path from now on (group_slaves.hpp).
+struct FollowPath {
+    AxisRef slave{};
+    std::int32_t numerator = 1, denominator = 1;          ///< u of the slave per u of the path
+    double acceleration = 0, deceleration = 0, jerk = 0;  ///< until it is in sync; 0 or less = the slave's limits
+    const void* instance = nullptr;                       ///< the block that gave it, to be named to people; never followed
+};
 /// AddMember ... | MC_GroupSetOverride | of jogging, limits, dynamics | of tools and loads
-using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics,
-                                  HoldJog, WriteSoftwareLimits, SetDynamicsMode, SelectTool, SelectPayload, WritePayload, WriteBodies>;
+using GroupSetting =
+    std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics, HoldJog,
+                 WriteSoftwareLimits, SetDynamicsMode, FollowPath, SelectTool, SelectPayload, WritePayload, WriteBodies>;
 
 }  // namespace taktwerk::axes

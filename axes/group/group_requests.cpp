@@ -396,6 +396,8 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         put(kept.jerk, written->dynamics.jerk);
     } else if (const auto* limits = std::get_if<WriteSoftwareLimits>(&setting)) {
         error = set_limits(*limits, owner);
+    } else if (const auto* wanted = std::get_if<FollowPath>(&setting)) {
+        error = state_ == GroupState::GroupDisabled ? ErrorId::group_disabled : slaves_.take(*wanted, members_, owner);
     } else if (const auto* mode = std::get_if<SetDynamicsMode>(&setting)) {
         view_.reference_dynamics.percent = mode->percent;
     } else if (std::holds_alternative<HoldJog>(setting) || std::holds_alternative<WriteJoggingDynamics>(setting)) {

@@ -18,7 +18,7 @@ namespace {
 constexpr double most_lag = 10;
 /// Of the velocity that is there for the frame: a follower needs the rest to come up to it.
 constexpr double usable_share = 0.99;
-constexpr double digits = 1e-9, slack = 1e-6;
+constexpr double digits = 1e-9, slack = 1e-6, jerk_slack = 1e-3;
 constexpr double endless = 1e9;
 
 struct Bounds {
@@ -215,7 +215,7 @@ void GroupTracking::see_room(const GroupMembers& members) noexcept {
     most.deceleration = most.acceleration;
     rest_ = most;
     most.jerk = std::numeric_limits<double>::infinity();  // of the master's own
-    room_ = {most, {most.velocity, most.acceleration / 2, most.deceleration / 2, rest_.jerk / 2}};
+    room_ = {most, {most.velocity, most.acceleration, most.deceleration, rest_.jerk / 2}};
 }
 
 void GroupTracking::follow(double period, Duration cycle) noexcept {
@@ -280,7 +280,9 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
         next[i] = {stand.axes[i], d.of[0][i], d.of[1][i]};
         const auto bounds = bounds_of(members.axis(i));
         const double rests = rest_of(next[i], bounds.limits);
-        const bool inside = std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
+        const double bend = std::abs(next[i].acceleration - states_[i].acceleration);
+        const bool smooth = !in.planned || bend <= bounds.limits.jerk * to_seconds(period) * (1 + jerk_slack) + digits;
+        const bool inside = smooth && std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
                             std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
                             (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
         if (!inside) return ErrorId::frame_limit;

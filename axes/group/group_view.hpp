@@ -19,8 +19,15 @@ struct TrackView {
     double lag = 0;        ///< u of the tool's point that it is behind
 };
 
+/// An axis that follows the length of a path.
+struct PathSlave {
+    AxisRef axis{};
+    CommandId id = 0;  ///< of the axis; 0: none
+    bool in_sync = false;
+};
+
 struct GroupView {
-    static constexpr std::size_t most_waiting = 16;
+    static constexpr std::size_t most_waiting = 16, most_slaves = 4;
 
     GroupState state = GroupState::GroupDisabled;
     std::uint16_t error = 0;  ///< alarm id or ErrorId that leads or led to GroupErrorStop, until it is reset; 0 = none
@@ -45,6 +52,8 @@ struct GroupView {
     std::array<double, 6> tool_set{}, tool_actual{}, tool_commanded{}, tool_velocity{}, tool_actual_velocity{};
 
     TrackView track{};
+    std::array<PathSlave, most_slaves> slaves{};  ///< axes that follow the path's length
+    double path_gone = 0;                         ///< u of all paths, one behind the other, forwards
 
     // along the path
     double path_velocity = 0, path_acceleration = 0;

@@ -354,6 +354,8 @@ void PathRun::see_limits() noexcept {
     else limiter_ = most >= in_use ? PathLimiter::axis : PathLimiter::command;
 }
 
+std::uint64_t PathRun::serial() const noexcept { return GroupLink::both(inside_->life, inside_->begun); }
+
 double PathRun::remaining_time() const noexcept {
     const auto& in = *inside_;
     if (!in.player || stops_ || arrived_) return 0;

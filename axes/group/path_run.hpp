@@ -87,6 +87,8 @@ public:
     /// Whose way the set-point is on: from the middle of a blend on the later one's (G-061). 0: none.
     [[nodiscard]] CommandId command() const noexcept { return command_; }
     [[nodiscard]] const MotionState& along() const noexcept { return s_; }
+    /// Of the path that along() is on: no two have the same.
+    [[nodiscard]] std::uint64_t serial() const noexcept;
     [[nodiscard]] MotionState of(std::size_t place) const noexcept { return states_[place]; }
     /// Of a path of poses: how the tool's point goes it. False: it stands in front of it, or there is none.
     [[nodiscard]] bool see_tool(ToolMotion& motion) const noexcept;
