@@ -31,7 +31,7 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
       paths_(paths),
       members_(axes),
       run_(config_.kinematics, cycle, paths, config_.millimetre),
-      tracking_(axes, config_.kinematics, config_.millimetre),
+      tracking_(axes, config_.kinematics),
       slaves_(axes) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;

@@ -14,8 +14,6 @@
 namespace taktwerk::axes {
 namespace {
 
-/// mm that the tool's point may lag behind a frame that it once followed.
-constexpr double most_lag = 10;
 /// Of the velocity that is there for the frame: a follower needs the rest to come up to it.
 constexpr double usable_share = 0.99;
 constexpr double digits = 1e-9, slack = 1e-6, jerk_slack = 1e-3;
@@ -59,7 +57,6 @@ ToolMotion at_rest(const Kinematics& arm, const JointVector& members, const Pose
 
 struct GroupTracking::Inside {
     std::shared_ptr<const Kinematics> arm;
-    double millimetre = 1;
     struct Product {
         std::uint32_t serial = 0;
         MasterTrack master;
@@ -69,14 +66,14 @@ struct GroupTracking::Inside {
     ToolMotion still{};  // the last one
     MemberVector q{};    // as given
     std::optional<EndlessMotion> master;
-    bool planned = false;  // it comes from set-points
-    double drag = 0;       // u of the tool's point per u of the frame's way
+    bool planned = false;               // it comes from set-points
+    std::optional<MotionState> before;  // its way, a cycle ago
+    double drag = 0;                    // u of the tool's point per u of the frame's way
 };
 
-GroupTracking::GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm, double millimetre)
+GroupTracking::GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm)
     : axes_(axes), inside_(std::make_unique<Inside>()) {
     inside_->arm = std::move(arm);
-    inside_->millimetre = millimetre;
 }
 GroupTracking::GroupTracking(GroupTracking&&) noexcept = default;
 GroupTracking::~GroupTracking() = default;
@@ -128,6 +125,7 @@ void GroupTracking::watch(GroupFrames& frames, Instant now, Duration period) noe
         if (const auto motion = next_of(seen.master, axis, now, seconds))
             frames.product[i] = numbers_of(object_at(track, way(track.reference, motion->place, feed), turn_of(axis)));
     }
+    if (in.master) in.before = {way(track_.reference, in.master->place, feed_), in.master->velocity, in.master->acceleration};
     in.master.reset();
     if (!follows()) return;
     const Axis& axis = axes_[track_.master.index];
@@ -176,8 +174,10 @@ void GroupTracking::release() noexcept {
 void GroupTracking::clear() noexcept {
     phase_ = Phase::off;
     fault_ = ErrorId::none;
-    fresh_ = caught_ = false;
-    lag_ = 0;
+    fresh_ = false;
+    difference_.clear();
+    inside_->master.reset();
+    inside_->before.reset();
     master_.forget();
 }
 
@@ -214,8 +214,33 @@ void GroupTracking::see_room(const GroupMembers& members) noexcept {
     }
     most.deceleration = most.acceleration;
     rest_ = most;
-    most.jerk = std::numeric_limits<double>::infinity();  // of the master's own
-    room_ = {most, {most.velocity, most.acceleration, most.deceleration, rest_.jerk / 2}};
+}
+
+/// What the frame's way lacks of its master runs down beside it, whatever the master does meanwhile; only where both together would become too fast it is
+/// thought over.
+MotionState GroupTracking::come_nearer(const MotionState& goal, Duration cycle) noexcept {
+    auto& in = *inside_;
+    const auto plan = [&](const MotionState& from, double beside) {
+        const double least = 0.01 * rest_.velocity, a = rest_.acceleration / 2, j = rest_.jerk / 2;
+        const SignLimits up{std::max(rest_.velocity - beside, least), a, a, j}, down{std::max(rest_.velocity + beside, least), a, a, j};
+        const auto made = Difference::plan(from, {up, down});
+        if (made.error == PlanError::none) difference_.run(made.profile);
+    };
+    if (fresh_) {
+        const double t = to_seconds(cycle);
+        const MotionState told{goal.position - t * (goal.velocity - t * goal.acceleration / 2), goal.velocity - t * goal.acceleration,
+                               goal.acceleration};
+        const auto was = in.before.value_or(told);
+        plan({way_.position - was.position, way_.velocity - was.velocity, way_.acceleration - was.acceleration}, was.velocity);
+        fresh_ = false;
+    } else if (!difference_.finished()) {
+        const auto& now = difference_.state();
+        const double speed = goal.velocity + now.velocity, faster = goal.acceleration + now.acceleration;
+        const double soon = std::abs(speed) + (speed * faster > 0 ? faster * faster / rest_.jerk : 0);
+        if (soon > usable_share * rest_.velocity) plan(now, goal.velocity);
+    }
+    const MotionState next = difference_.advance(cycle);
+    return difference_.finished() ? MotionState{} : next;
 }
 
 void GroupTracking::follow(double period, Duration cycle) noexcept {
@@ -225,29 +250,22 @@ void GroupTracking::follow(double period, Duration cycle) noexcept {
         release();
     };
     if (phase_ == Phase::following && !in.master) let_go(ErrorId::frame_lost);
-    if (phase_ == Phase::following && std::abs(in.master->velocity) > usable_share * room_.axis.velocity) let_go(ErrorId::frame_too_fast);
+    if (phase_ == Phase::following && std::abs(in.master->velocity) > usable_share * rest_.velocity) let_go(ErrorId::frame_too_fast);
     if (phase_ == Phase::following) {
-        if (fresh_) {
-            GearLine line;
-            (void)line.set({1, 1}, feed_, feed_, track_.reference, {});
-            follower_.begin(line, RunDown::position, room_);
-            fresh_ = false;
-        }
-        follower_.set_limits(room_);
-        const auto next = follower_.step(*in.master, {}, way_, {0, feed_}, cycle);
+        const auto& master = *in.master;
+        const MotionState goal{way(track_.reference, master.place, feed_), master.velocity, master.acceleration};
+        const MotionState beside = come_nearer(goal, cycle);
+        const MotionState next{goal.position + beside.position, goal.velocity + beside.velocity, goal.acceleration + beside.acceleration};
         // What is measured trembles: of that the jerk is what it is.
         const double bend = std::abs(next.acceleration - way_.acceleration) / period;
-        const bool harder =
-            in.planned && (bend > rest_.jerk * (1 + slack) + digits || std::abs(next.acceleration) > rest_.acceleration * (1 + slack));
+        // A master that is planned behind the group and bends harder than it may: what was foreseen of it does not fit to what it does.
+        const double torn = std::abs(next.velocity - way_.velocity - period * (next.acceleration + way_.acceleration) / 2);
+        const bool harder = in.planned && (bend > rest_.jerk * (1 + slack) + digits || torn > rest_.jerk * period * period / 2 + digits ||
+                                           std::abs(next.acceleration) > rest_.acceleration * (1 + slack));
         if (harder) let_go(ErrorId::frame_too_fast);
         else way_ = next;
     }
-    if (phase_ == Phase::following) {
-        lag_ = way(track_.reference, in.master->place, feed_) - way_.position;
-        caught_ = caught_ || follower_.in_sync();
-        if (caught_ && std::abs(lag_) * in.drag > most_lag * in.millimetre) let_go(ErrorId::frame_too_fast);
-        return;
-    }
+    if (phase_ == Phase::following) return;
     if (phase_ != Phase::leaving) return;
     left_ += cycle;
     const double t = to_seconds(left_);
@@ -293,7 +311,8 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
 }
 
 void GroupTracking::publish(GroupView& view) const noexcept {
-    view.track = {active() ? track_.master : AxisRef{}, in_sync(), phase_ == Phase::following ? lag_ * inside_->drag : 0};
+    view.track = {active() ? track_.master : AxisRef{}, in_sync(),
+                  phase_ == Phase::following ? -difference_.state().position * inside_->drag : 0};
 }
 
 }  // namespace taktwerk::axes

@@ -2,7 +2,7 @@
 // A group on a frame that moves: it joins the frame from rest, follows it, and lets it go again. Real-time safe.
 //
 // A path in such a frame is planned as if the frame stood where it was when the group joined it: the path stays a path, and its time one number (path_run).
-// The frame's way is a second number, which the follower of couplings brings up to the master's without a jump. Each cycle puts both together.
+// The frame's way is a second number; what it lacks of its master's runs down beside it. Each cycle puts both together.
 // Whatever a member may do is parted in halves: one for the path, one for the frame. Where the arm bends what was planned that may not be enough,
 // so each set-point is looked at before it is given; one that would be outside a limit, or beyond a place from which the member could still stop, is
 // not: the members brake, each on its own ramp.
@@ -11,7 +11,7 @@
 #include <memory>
 #include <span>
 
-#include "axes/coupling/follower.hpp"
+#include "axes/coupling/difference.hpp"
 #include "axes/coupling/master_track.hpp"
 #include "axes/group/frame_track.hpp"
 #include "axes/group/group_members.hpp"
@@ -28,8 +28,7 @@ public:
     /// Of what a member can do, what a path in a moving frame may take; the rest is the frame's.
     static constexpr double path_share = 0.5;
 
-    /// `millimetre`: in u.
-    GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm, double millimetre);
+    GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm);
     GroupTracking(GroupTracking&&) noexcept;
     ~GroupTracking();
 
@@ -52,7 +51,7 @@ public:
     /// It will go on with the frame.
     [[nodiscard]] bool follows() const noexcept { return phase_ == Phase::prepared || phase_ == Phase::following; }
     [[nodiscard]] bool rests() const noexcept { return phase_ == Phase::off || phase_ == Phase::resting; }
-    [[nodiscard]] bool in_sync() const noexcept { return phase_ == Phase::following && follower_.in_sync(); }
+    [[nodiscard]] bool in_sync() const noexcept { return phase_ == Phase::following && !fresh_ && difference_.finished(); }
     /// Seen from the machine, as paths in it are planned.
     [[nodiscard]] Pose planned_frame() const noexcept { return planned_; }
     /// What is left to a path: caps of a run.
@@ -77,6 +76,7 @@ private:
     struct Inside;
     [[nodiscard]] bool read(MasterTrack& track, AxisRef master, Instant now, Duration period) const noexcept;
     void follow(double period, Duration cycle) noexcept;
+    [[nodiscard]] MotionState come_nearer(const MotionState& goal, Duration cycle) noexcept;
     void see_room(const GroupMembers& members) noexcept;
 
     std::span<Axis> axes_;
@@ -84,18 +84,17 @@ private:
     std::array<MotionState, most_members> states_{};
     FrameTrack track_{};
     Pose planned_{};
-    Follower follower_;
+    Difference difference_;  // of the frame's way from its master's, while it joins
     MasterTrack master_;
-    FollowerLimits room_{};
     MotionLimits rest_{};  // of the frame's way: half of each member
     Plan leaving_{};
-    MotionState way_{};          // of the frame, since the reference
-    double begun_at_ = 0;        // of it: where the path is planned
-    double feed_ = 1, lag_ = 0;  // u: of the master in a turn; behind the master
-    Duration left_{};            // since it was let go
+    MotionState way_{};    // of the frame, since the reference
+    double begun_at_ = 0;  // of it: where the path is planned
+    double feed_ = 1;      // u of the master
+    Duration left_{};      // since it was let go
     Phase phase_ = Phase::off;
     ErrorId fault_ = ErrorId::none;
-    bool fresh_ = false, caught_ = false;
+    bool fresh_ = false;
     std::uint32_t serials_ = 0;
 };
 

@@ -20,7 +20,7 @@ struct Walk {
     bool once_in(int n) { return std::uniform_int_distribution<int>(1, n)(dice) == 1; }
 
     void deed() {
-        if (once_in(150)) {
+        if (once_in(150) && (rough || rig.axis(rig.last).set_acceleration == 0)) {
             const double v = once_in(4) ? 0 : draw(-most, most);
             rig.step([&] {
                 (void)rig.axes[rig.last].submit(
@@ -76,6 +76,7 @@ struct Walk {
     Six origin;
     double turn;
     JointVector home{};
+    bool rough = false;  // a belt that is halted against its own acceleration stops with more jerk than its limit
     bool tracked = false, stood = false;
     std::array<double, 3> at{};
     std::size_t compared = 0;
@@ -86,7 +87,8 @@ int walks() {
     return more != nullptr ? std::max(1, std::atoi(more)) : 6;
 }
 
-// G-083, G-086, G-088: of straight axes all of it is promised: a belt of 45 u/s and 250 u/s2 is inside the frame's half of each, and there is no error.
+// G-083, G-086, G-088: of straight axes all of it is promised: a belt of 45 u/s and 250 u/s2 with half of their jerk while the group joins
+// it is inside the frame's half of each, and there is no error.
 TEST(GroupTrackingProperty, ABeltWithItsMoodsAndStraightAxes) {
     std::size_t compared = 0;
     for (int seed = 1; seed <= walks(); ++seed) {
@@ -119,6 +121,7 @@ TEST(GroupTrackingProperty, ABeltWithItsMoodsAndAScara) {
         ASSERT_TRUE(rig.done(ready.id));
         Walk walk(rig, static_cast<std::uint32_t>(seed), 80, {250, 60, 0, 0, 0, std::numbers::pi / 2},
                   70 * std::numbers::pi / 180 - std::numbers::pi / 2);
+        walk.rough = true;
         walk.home = {-30, 80, 0, 20};
         auto last = rig.view().state;
         for (int i = 0; i < 6000; ++i) {

@@ -23,8 +23,9 @@ struct PumpPlc : GroupPlc {
         program = [this](const MotionContext& ctx) { sync(ctx); };
     }
     axes::CommandId go(const axes::JointVector& to, double velocity, axes::MC_BufferMode mode = axes::mcBuffered) {
-        axes::Submitted answer;
-        answer = rig.submit(axes::test::line(to, velocity, mode));
+        auto move = axes::test::line(to, velocity, mode);
+        move.dynamics = {velocity, 100, 100, 1000};  // what 3 : 2 makes of it the pump's 250 u/s2 and 2500 u/s3 can do
+        const auto answer = rig.submit(move);
         EXPECT_EQ(answer.error, ErrorId::none);
         return answer.id;
     }
@@ -64,7 +65,7 @@ TEST(GroupSyncBlocks, CoupledOnTheWayItCatchesUpAndItsOwnCommandEndsIt) {
     plc.sync.Execute = false;
     (void)plc.go({90, 0, 0}, 20);
     plc.run(700);
-    ASSERT_NEAR(plc.rig.view().path_velocity, 20, 1e-9);
+    ASSERT_NEAR(plc.rig.view().path_velocity, 20, 0.05);
     plc.sync.RatioNumerator = -1;
     plc.sync.Execute = true;
     plc.scan();
@@ -74,9 +75,10 @@ TEST(GroupSyncBlocks, CoupledOnTheWayItCatchesUpAndItsOwnCommandEndsIt) {
     for (int i = 0; i < 200; ++i) {
         plc.scan();
         ASSERT_NEAR(plc.pumped() + plc.rig.view().path_gone, apart, 1e-9);
-        ASSERT_NEAR(plc.rig.axis(3).set_velocity, -20, 1e-9);
+        ASSERT_NEAR(plc.rig.axis(3).set_velocity, -plc.rig.view().path_velocity, 1e-9);
     }
     plc.rig.step([&] { (void)plc.rig.axes[3].submit({.kind = axes::CommandKind::halt}, axes::Owner::program); });
+    plc.scan();
     plc.scan();
     EXPECT_TRUE(plc.sync.CommandAborted);
     EXPECT_FALSE(plc.sync.InSync);

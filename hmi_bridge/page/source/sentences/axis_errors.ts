@@ -241,7 +241,7 @@ export const axis_errors: Readonly<Record<string, string>> = {
     'The belt or table has no valid position, its position jumped, or its axis is in ErrorStop; the group comes to rest on its path while it lets the frame go': '传送带或转台没有有效位置、位置发生跳变，或其轴处于 ErrorStop；轴组在路径上停止，同时脱离该坐标系',
     'Remove the cause at that axis, reset it and the group, and see the object anew': '排除该轴的原因，复位该轴和轴组，并重新识别对象',
     'The moving frame is too fast for the group': '运动坐标系对轴组来说过快',
-    'Half of what each member can do is there for the frame, as the arm stands; the belt or table asks for more, or the tool has fallen more than 10 mm behind it': '每个成员轴能力的一半用于跟随坐标系；传送带或转台要求更多，或工具落后超过 10 mm',
+    'Half of what each member can do is there for the frame, as the arm stands; the belt or table asks for more velocity, acceleration or jerk': '每个成员轴能力的一半用于跟随坐标系；传送带或转台要求更高的速度、加速度或加加速度',
     'Slow the belt or table down, let the arm take the object where it is faster, or raise the limits of the member that is the slowest there': '降低传送带或转台的速度，让机械臂在更快的位置取件，或提高该处最慢成员轴的限制',
     'The moving frame led a member to a limit': '运动坐标系使某个成员轴到达极限',
     'The object has left the reach of the arm, came to a singularity or a software limit, or path and frame together ask more of a member than it has; every member brakes on its own ramp': '对象已离开机械臂的工作范围、到达奇异点或软件限位，或路径与坐标系合起来超出某个成员轴的能力；每个成员轴按自己的斜坡制动',
