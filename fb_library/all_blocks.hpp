@@ -17,7 +17,9 @@
 #include "fb_library/groups/group_paths.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
+#include "fb_library/groups/group_sync_blocks.hpp"
 #include "fb_library/groups/group_tools.hpp"
+#include "fb_library/groups/group_tracking_blocks.hpp"
 #include "fb_library/groups/group_values.hpp"
 #include "fb_library/iec/bistables.hpp"
 #include "fb_library/iec/counters.hpp"
@@ -109,7 +111,7 @@ using GroupBlocks =
               MC_GroupWritePayloadData, MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
               MC_GroupReadRigidBodyDynamic, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics, MC_GroupReadJoggingDynamics,
               MC_PathSelect, MC_MovePath, MC_GroupHome, MC_GroupWriteSWLimits, MC_GroupReadParameter, MC_GroupWriteParameter,
-              MC_GroupWriteReferenceDynamics, MC_GroupReadReferenceDynamics>;
+              MC_GroupWriteReferenceDynamics, MC_GroupReadReferenceDynamics, MC_TrackConveyorBelt, MC_TrackRotaryTable, MC_SyncAxisToGroup>;
 /// Stored paths, beside the standard's blocks.
 using PathBlocks = BlockList<Path_Handshake>;
 

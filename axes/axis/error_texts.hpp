@@ -346,6 +346,18 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
     {ErrorId::path_program, "path_program",
      {"The text of the stored path has a fault", "A block of it cannot be carried out; the group's path view names line, column and reason", "Mend the program: `taktwerk gcode check FILE` says what is wrong with it"},
      {"存储路径的程序文本有错误", "其中一个程序段无法执行；轴组的路径视图给出行、列和原因", "修正程序：`taktwerk gcode check FILE` 会指出错误"}},
+    {ErrorId::frame_in_use, "frame_in_use",
+     {"A command in this moving frame is under way", "The group moves in the frame, follows it or has commands in it that wait: another object in it would bend them", "Wait until they are done and lead the group into another frame, or give the new object another frame (mcPCS_2 to mcPCS_8)"},
+     {"该运动坐标系中有命令正在执行", "轴组正在该坐标系中运动、跟随它，或有该坐标系中的命令在等待：更换其中的对象会改变这些命令的路径", "等待命令完成并让轴组进入另一个坐标系，或为新对象使用另一个坐标系（mcPCS_2 至 mcPCS_8）"}},
+    {ErrorId::frame_lost, "frame_lost",
+     {"The axis that moves the frame is lost", "The belt or table has no valid position, its position jumped, or its axis is in ErrorStop; the group comes to rest on its path while it lets the frame go", "Remove the cause at that axis, reset it and the group, and see the object anew"},
+     {"驱动坐标系的轴已丢失", "传送带或转台没有有效位置、位置发生跳变，或其轴处于 ErrorStop；轴组在路径上停止，同时脱离该坐标系", "排除该轴的原因，复位该轴和轴组，并重新识别对象"}},
+    {ErrorId::frame_too_fast, "frame_too_fast",
+     {"The moving frame is too fast for the group", "Half of what each member can do is there for the frame, as the arm stands; the belt or table asks for more velocity, acceleration or jerk", "Slow the belt or table down, let the arm take the object where it is faster, or raise the limits of the member that is the slowest there"},
+     {"运动坐标系对轴组来说过快", "每个成员轴能力的一半用于跟随坐标系；传送带或转台要求更高的速度、加速度或加加速度", "降低传送带或转台的速度，让机械臂在更快的位置取件，或提高该处最慢成员轴的限制"}},
+    {ErrorId::frame_limit, "frame_limit",
+     {"The moving frame led a member to a limit", "The object has left the reach of the arm, came to a singularity or a software limit, or path and frame together ask more of a member than it has; every member brakes on its own ramp", "Begin earlier, end the work before the object leaves, or slow the path and the belt down"},
+     {"运动坐标系使某个成员轴到达极限", "对象已离开机械臂的工作范围、到达奇异点或软件限位，或路径与坐标系合起来超出某个成员轴的能力；每个成员轴按自己的斜坡制动", "更早开始，在对象离开之前完成工作，或降低路径和传送带的速度"}},
 }};
 // clang-format on
 

@@ -27,7 +27,12 @@ std::string_view name(GroupState state) noexcept {
 }
 
 AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<const AxisRef> members, Duration cycle, const PathShelf* paths)
-    : config_(std::move(config)), paths_(paths), members_(axes), run_(config_.kinematics, cycle, paths, config_.millimetre) {
+    : config_(std::move(config)),
+      paths_(paths),
+      members_(axes),
+      run_(config_.kinematics, cycle, paths, config_.millimetre),
+      tracking_(axes, config_.kinematics),
+      slaves_(axes) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;
     equipment_ = config_.equipment;
@@ -44,7 +49,7 @@ void AxisGroup::abort_all() noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);
-    if (interrupted_) run_.clear();  // nobody goes on with it
+    if (interrupted_ && !members_.led()) run_.clear();  // nobody goes on with it
     forget_path();
     interrupting_ = 0;
     interrupted_ = begun_ = false;
@@ -52,6 +57,7 @@ void AxisGroup::abort_all() noexcept {
 
 void AxisGroup::leave(GroupEvent event) noexcept {
     members_.leave();
+    tracking_.clear();
     if (!interrupted_) run_.clear();
     fire(event);
 }
@@ -65,11 +71,12 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
     queue_.finish_active(Outcome::error, static_cast<ErrorId>(error));
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
     if (interrupting_ != 0) queue_.record(interrupting_, Outcome::error, ErrorId::aborted_by_axis_error);
-    if (interrupted_) run_.clear();
+    if (interrupted_ && !members_.led()) run_.clear();
     forget_path();
     interrupting_ = lock_ = 0;
     interrupted_ = begun_ = false;
     run_.stop({}, Override{});
+    tracking_.release();
 }
 
 // --- the cycle ------------------------------------------------------------------------------------------------------------------
@@ -130,17 +137,19 @@ void AxisGroup::watch_reset() noexcept {
     fire(GroupEvent::reset);
 }
 
-void AxisGroup::plan(Instant, Duration period) noexcept {
+void AxisGroup::plan(Instant now, Duration period) noexcept {
+    tracking_.watch(equipment_.frames, now, period);
     if (state_ == GroupState::GroupHoming && disabling_ == 0) go_on_homing();
     const bool searched = state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming;
     const bool member_stops = searched && homing_.moves(members_);
     if (!member_stops && (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0)) {
-        if (run_.over() || !members_.led()) settle();
+        if ((run_.over() && (tracking_.rests() || tracking_.follows())) || !members_.led()) settle();
         if (members_.led()) {
             send_waiting();
             go_on(period);
         }
     }
+    slaves_.step(run_.serial(), run_.along(), period);
     publish();
     if (config_.kinematics) see_tool(view_, config_.kinematics.get(), moves_with_tool() ? run_.carried().tool : equipment_.tool_pose());
 }
@@ -178,11 +187,12 @@ void AxisGroup::settle() noexcept {
         queue_.record(interrupting_, Outcome::done);
         interrupting_ = 0;
         interrupted_ = true;
-        return leave(GroupEvent::done);
+        return tracking_.follows() ? void() : leave(GroupEvent::done);  // G-087
     }
+    if (interrupted_) return;
     for (;;) {
         if (!queue_.has_active()) {
-            if (queue_.waiting() == 0) return leave(GroupEvent::done);
+            if (queue_.waiting() == 0) return tracking_.follows() ? void() : leave(GroupEvent::done);  // G-019
             queue_.activate_next();
             begun_ = false;
         }
@@ -197,13 +207,19 @@ void AxisGroup::settle() noexcept {
 std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) noexcept {
     const auto& command = active.command;
     if (!run_.exists()) {
+        auto over_with = ErrorId::none;
+        if (!change_frame(active.place.track, over_with)) return std::nullopt;
+        if (over_with != ErrorId::none) return over_with;
         hold_ = members_.set_positions();
         const bool way = command.kind != GroupCommandKind::jog;
         if (way)
             if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none)
                 return error;
         if (way && goes_nowhere(command, hold_, members_)) return ErrorId::none;
-        if (!(way ? run_.restart(members_, factors()) : run_.restart(members_, jog_.factors(factors()), &view_.jogging_dynamics)))
+        const bool moving = tracking_.active();
+        const auto caps = moving ? tracking_.path_caps(members_) : JoggingDynamics{};
+        if (!(way ? run_.restart(members_, factors(), moving ? &caps : nullptr, moving ? &still_ : nullptr)
+                  : run_.restart(members_, jog_.factors(factors()), &view_.jogging_dynamics)))
             return std::nullopt;
         sent_ = 0;
     }
@@ -216,6 +232,7 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         return std::nullopt;
     }
     begun_ = run_.begin(active.id);
+    if (begun_) tracking_.engage();
     if (begun_) view_.commanded = run_.end();
     return std::nullopt;
 }
@@ -226,11 +243,14 @@ void AxisGroup::send_waiting() noexcept {
     const auto send = [this](const AcceptedGroupCommand& accepted, const AcceptedGroupCommand* before) {
         const auto& command = accepted.command;
         if (is_setting(command.kind) || accepted.id <= sent_ || !goes_a_way(command.kind)) return true;
+        if (accepted.place.track != (tracking_.active() ? tracking_.track() : FrameTrack{})) return false;  // another frame: from rest
+        auto place = accepted.place;
+        if (place.track.moves()) place.frame = tracking_.planned_frame();
         const bool stored = command.kind == GroupCommandKind::path || (before != nullptr && before->command.kind == GroupCommandKind::path);
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         const bool sent = command.kind == GroupCommandKind::jog
-                              ? run_.send(accepted.id, command, accepted.place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
-                              : run_.send(accepted.id, command, accepted.place, resolved(command.dynamics, view_.default_dynamics), joins);
+                              ? run_.send(accepted.id, command, place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
+                              : run_.send(accepted.id, command, place, resolved(command.dynamics, view_.default_dynamics), joins);
         if (!sent) return false;
         sent_ = accepted.id;
         return true;
@@ -254,7 +274,8 @@ bool AxisGroup::begin_active() noexcept {
         queue_.finish_active(Outcome::done);
         return false;
     }
-    if (run_.stuck() != ErrorId::none || run_.stops()) run_.clear();
+    const bool same = active.place.track == (tracking_.active() ? tracking_.track() : FrameTrack{});
+    if (run_.stuck() != ErrorId::none || run_.stops() || !same) run_.clear();
     elapsed_ = {};
     if (jogs() && !turn_jog()) return false;
     const auto over_with = begin_way(active);
@@ -269,7 +290,9 @@ bool AxisGroup::begin_active() noexcept {
 void AxisGroup::go_on(Duration period) noexcept {
     run_.advance(period);
     tend_jog(period);
-    const auto error = members_.lead([&](std::size_t place) { return run_.exists() ? run_.of(place) : MotionState{hold_[place], 0, 0}; });
+    if (tracking_.active()) go_with_frame(period);
+    if (!members_.led()) return;
+    const auto error = members_.lead([&](std::size_t place) { return state_of(place); });
     if (error != ErrorId::none || run_.fault() != ErrorId::none) {
         fail(static_cast<std::uint16_t>(error != ErrorId::none ? error : run_.fault()));
         return;
@@ -290,17 +313,17 @@ void AxisGroup::go_on(Duration period) noexcept {
     const bool interrupts = interrupting_ != 0;
     if (!(interrupts && active.command.kind == GroupCommandKind::wait)) elapsed_ += period;
     if (way && run_.stuck() != ErrorId::none && run_.over() && !run_.arrived()) queue_.finish_active(Outcome::error, run_.stuck());
-    const bool done = active.command.kind == GroupCommandKind::wait ? !interrupts && elapsed_ >= active.command.duration
-                                                                    : way && !jogs() && run_.arrived() && run_.command() == active.id;
+    const bool done = active.command.kind == GroupCommandKind::wait
+                          ? !interrupts && elapsed_ >= active.command.duration
+                          : way && !jogs() && run_.arrived() && run_.command() == active.id && (!tracking_.active() || tracking_.in_sync());
     if (done) queue_.finish_active(Outcome::done);
 }
 
 JointVector AxisGroup::here() const noexcept {
     if (!members_.led()) return members_.set_positions();
-    if (!run_.exists()) return hold_;
     JointVector at = hold_;
     for (std::size_t i = 0; i < most_members; ++i)
-        if (members_.has(i)) at[i] = run_.of(i).position;
+        if (members_.has(i)) at[i] = state_of(i).position;
     return at;
 }
 
@@ -322,9 +345,7 @@ void AxisGroup::publish() noexcept {
             continue;
         }
         const auto& axis = members_.axis(i).view();
-        const MotionState set = !led            ? MotionState{axis.set_position, axis.set_velocity, axis.set_acceleration}
-                                : run_.exists() ? run_.of(i)
-                                                : MotionState{hold_[i], 0, 0};
+        const MotionState set = led ? state_of(i) : MotionState{axis.set_position, axis.set_velocity, axis.set_acceleration};
         view_.set_position[i] = set.position;
         view_.set_velocity[i] = set.velocity;
         view_.set_acceleration[i] = set.acceleration;
@@ -333,7 +354,7 @@ void AxisGroup::publish() noexcept {
         view_.powered = view_.powered && axis.powered;
         view_.online = view_.online && axis.online;
         view_.in_position = view_.in_position && axis.in_position;
-        if (!run_.exists()) view_.commanded[i] = set.position;
+        if (!run_.exists() || tracking_.active()) view_.commanded[i] = set.position;
     }
     const auto& along = run_.along();
     view_.path_velocity = led ? along.velocity : 0;
@@ -354,6 +375,8 @@ void AxisGroup::publish() noexcept {
     view_.interrupting = interrupting_;
     view_.disabling = disabling_;
     see_selection();
+    tracking_.publish(view_);
+    slaves_.publish(view_);
     queue_.publish(view_);
 }
 

@@ -21,7 +21,9 @@
 #include "axes/group/group_jog.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_queue.hpp"
+#include "axes/group/group_slaves.hpp"
 #include "axes/group/group_state.hpp"
+#include "axes/group/group_tracking.hpp"
 #include "axes/group/path_run.hpp"
 
 namespace taktwerk::axes {
@@ -93,6 +95,14 @@ private:
     void fire(GroupEvent event) noexcept;
     void fail(std::uint16_t error) noexcept;
     void abort_all() noexcept;
+    /// Where a member is to be now.
+    [[nodiscard]] MotionState state_of(std::size_t place) const noexcept;
+    // Of frames that move: group_following.cpp.
+    [[nodiscard]] ErrorId refuse_track(const GroupCommand& command) const noexcept;
+    [[nodiscard]] bool uses_track(MC_CoordSystem frame) const noexcept;
+    /// False: not yet, it still leaves another frame. Else what it is over with, if it cannot begin.
+    [[nodiscard]] bool change_frame(const FrameTrack& track, ErrorId& error) noexcept;
+    void go_with_frame(Duration period) noexcept;
     void leave(GroupEvent event) noexcept;
     void settle() noexcept;
     /// False: it is over already.
@@ -124,7 +134,10 @@ private:
     GroupMembers members_;
     GroupQueue queue_;
     PathRun run_;
-    GroupJog jog_;  // while jogs()
+    GroupTracking tracking_;
+    GroupSlaves slaves_;
+    JointVector still_{};  // where the members were, had the frame that they follow not moved
+    GroupJog jog_;         // while jogs()
     GroupHoming homing_;
     GroupView view_;  // and its settings: override, dynamics, error, reset
     GroupEquipment equipment_;

@@ -7,6 +7,7 @@
 
 #include "axes/axis/command.hpp"
 #include "axes/group/equipment_settings.hpp"
+#include "axes/group/frame_track.hpp"
 #include "axes/group/group_types.hpp"
 #include "axes/group/path_types.hpp"
 #include "core/time.hpp"
@@ -33,8 +34,9 @@ enum class GroupCommandKind : std::uint8_t {
     home,       ///< the members one after the other; target = the coordinates at their references
     disable,    ///< GroupDisabled once the group stands
     // no motion, but with a place between motions where `execution` asks for one
-    set_frame,   ///< `frame` is at `target` from then on, seen from the world
-    write_tool,  ///< `number` is `tool`
+    set_frame,    ///< `frame` is at `target` from then on, seen from the world
+    write_tool,   ///< `number` is `tool`
+    track_frame,  ///< `frame` moves as `track` says
     // at once
     set_position,           ///< the group is at `target`
     set_position_relative,  ///< by `target` from where it is
@@ -43,7 +45,7 @@ enum class GroupCommandKind : std::uint8_t {
 [[nodiscard]] constexpr bool is_administrative(GroupCommandKind kind) noexcept { return kind >= GroupCommandKind::set_frame; }
 /// Of those, what may wait for its turn.
 [[nodiscard]] constexpr bool is_setting(GroupCommandKind kind) noexcept {
-    return kind == GroupCommandKind::set_frame || kind == GroupCommandKind::write_tool;
+    return kind == GroupCommandKind::set_frame || kind == GroupCommandKind::write_tool || kind == GroupCommandKind::track_frame;
 }
 [[nodiscard]] constexpr bool goes_a_way(GroupCommandKind kind) noexcept {
     return kind >= GroupCommandKind::linear_absolute && kind <= GroupCommandKind::jog;
@@ -99,6 +101,7 @@ struct GroupCommand {
     MC_ExecutionMode execution = mcImmediately;  ///< of set_frame, write_tool
     std::uint8_t number = 0;                     ///< of the tool
     Tool tool{};
+    FrameTrack track{};              ///< of track_frame; its reference and number are the group's
     PathRef path{};                  ///< GroupCommandKind::path
     std::uint32_t ticket = 0;        ///< of its selection
     const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
@@ -158,8 +161,16 @@ struct HoldJog {
     JointVector direction{};                ///< -1 to 1 each, as GroupCommand::target
     double velocity = 1, acceleration = 1;  ///< of the jogging dynamics: 0 to 1; above 0 to 1
 };
+/// MC_SyncAxisToGroup: `slave` follows the length of the path from now on (group_slaves.hpp).
+struct FollowPath {
+    AxisRef slave{};
+    std::int32_t numerator = 1, denominator = 1;          ///< u of the slave per u of the path
+    double acceleration = 0, deceleration = 0, jerk = 0;  ///< until it is in sync; 0 or less = the slave's limits
+    const void* instance = nullptr;                       ///< the block that gave it, to be named to people; never followed
+};
 /// AddMember ... | MC_GroupSetOverride | of jogging, limits, dynamics | of tools and loads
-using GroupSetting = std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics,
-                                  HoldJog, WriteSoftwareLimits, SetDynamicsMode, SelectTool, SelectPayload, WritePayload, WriteBodies>;
+using GroupSetting =
+    std::variant<AddMember, RemoveMember, RemoveAllMembers, EnableGroup, WriteDynamics, Override, WriteJoggingDynamics, HoldJog,
+                 WriteSoftwareLimits, SetDynamicsMode, FollowPath, SelectTool, SelectPayload, WritePayload, WriteBodies>;
 
 }  // namespace taktwerk::axes

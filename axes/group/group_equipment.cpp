@@ -30,6 +30,10 @@ bool usable(const RigidBody& body) noexcept {
 
 ErrorId refuse_equipment(const GroupCommand& setting) noexcept {
     if (setting.execution > mcDelayed) return ErrorId::invalid_parameter;
+    if (setting.kind == GroupCommandKind::track_frame) {
+        if (!is_product(setting.frame)) return ErrorId::invalid_parameter;
+        return finite(setting.track.origin) && finite(setting.track.object) ? ErrorId::none : ErrorId::invalid_position;
+    }
     if (setting.kind == GroupCommandKind::set_frame) {
         if (setting.frame > mcPCS_8) return ErrorId::invalid_parameter;
         if (GroupFrames{}.find(setting.frame) == nullptr) return ErrorId::not_supported;
@@ -41,7 +45,9 @@ ErrorId refuse_equipment(const GroupCommand& setting) noexcept {
 }
 
 void apply(GroupFrames& frames, const GroupCommand& setting) noexcept {
+    if (setting.kind == GroupCommandKind::track_frame) frames.tracks[product_index(setting.frame)] = setting.track;
     if (setting.kind != GroupCommandKind::set_frame) return;
+    if (is_product(setting.frame)) frames.tracks[product_index(setting.frame)] = {};
     if (SixNumbers* frame = frames.find(setting.frame)) *frame = six_of(setting.target);
 }
 

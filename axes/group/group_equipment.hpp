@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "axes/group/frame_track.hpp"
 #include "axes/group/group_command.hpp"
 #include "axes/group/written_pose.hpp"
 #include "axes/kinematics/joints.hpp"
@@ -23,7 +24,8 @@ inline constexpr double least_singularity = 0.01;
 
 struct GroupFrames {
     SixNumbers machine{};                              ///< MCS, seen from WCS
-    std::array<SixNumbers, product_frames> product{};  ///< seen from WCS
+    std::array<SixNumbers, product_frames> product{};  ///< seen from WCS; of one that moves: where it is now
+    std::array<FrameTrack, product_frames> tracks{};   ///< of those that move
 
     /// nullptr: that frame is not set (the world), or is none (axes, flange), or is written otherwise (the tool).
     [[nodiscard]] SixNumbers* find(MC_CoordSystem frame) noexcept {
@@ -33,6 +35,11 @@ struct GroupFrames {
     [[nodiscard]] const SixNumbers* find(MC_CoordSystem frame) const noexcept { return const_cast<GroupFrames*>(this)->find(frame); }
     /// Of MCS, WCS and products; others: as MCS.
     [[nodiscard]] Pose seen_from_machine(MC_CoordSystem frame) const noexcept;
+
+    /// A frame that stands has a track of no kind.
+    [[nodiscard]] FrameTrack track_of(MC_CoordSystem frame) const noexcept {
+        return is_product(frame) ? tracks[product_index(frame)] : FrameTrack{};
+    }
 
     friend bool operator==(const GroupFrames&, const GroupFrames&) = default;
 };
@@ -47,6 +54,7 @@ struct CarriedTool {
 struct CommandPlace {
     Pose frame{};  ///< its frame, seen from the machine; of TCS only the planner knows it
     CarriedTool carried{};
+    FrameTrack track{};  ///< where its frame moves: the frame is said anew when the command begins
 };
 
 /// A row of Denavit and Hartenberg's; rad and the unit of length.

@@ -18,11 +18,15 @@ CommandPlace AxisGroup::place_of(const GroupCommand& command) const noexcept {
                 place.carried.tool = pose_of_numbers(setting.tool.frame);
         }
     place.frame = frames.seen_from_machine(command.frame);
+    place.track = frames.track_of(command.frame);
     return place;
 }
 
 /// G-028: at once, behind the running command, or behind all that wait.
-Submitted AxisGroup::take_setting(const GroupCommand& command, Owner owner) noexcept {
+Submitted AxisGroup::take_setting(const GroupCommand& wanted, Owner owner) noexcept {
+    GroupCommand command = wanted;
+    if (command.kind == GroupCommandKind::track_frame)
+        if (const auto error = tracking_.take(command.track, members_); error != ErrorId::none) return {0, error};
     const auto id = queue_.next_id();
     const bool later = command.execution != mcImmediately && (queue_.has_active() || queue_.waiting() > 0);
     if (!later) {

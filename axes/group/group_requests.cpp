@@ -104,6 +104,7 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     if (is_administrative(command.kind) && !is_setting(command.kind)) return ErrorId::none;  // set_position() says it
     if (is_setting(command.kind)) {
         if (const auto error = refuse_equipment(command); error != ErrorId::none) return error;
+        if (const auto error = refuse_track(command); error != ErrorId::none) return error;
         if (command.execution == mcImmediately) return ErrorId::none;
         // No motion of the group ends there, so nothing would ever be behind it.
         if (state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming) return ErrorId::state_forbids;
@@ -118,10 +119,13 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
         return command.frame == mcACS ? ErrorId::none : ErrorId::not_supported;
     }
     if (command.kind == GroupCommandKind::jog) {
+        if (const auto track = refuse_track(command); track != ErrorId::none) return track;
         const auto error = refuse_frame(command, config_.kinematics.get(), members_);
         return error != ErrorId::none ? error
                                       : GroupJog::refuse(command, {command.frame, view_.jogging_dynamics, members_, equipment_.arm});
     }
+    if (goes_a_way(command.kind))
+        if (const auto error = refuse_track(command); error != ErrorId::none) return error;
     if (goes_a_way(command.kind))
         if (const auto error = refuse_way(command); error != ErrorId::none) return error;
     return has_place_in_queue(command.kind) && waits(command) && queue_.full() ? ErrorId::queue_full : ErrorId::none;
@@ -139,7 +143,8 @@ Submitted AxisGroup::submit(const GroupCommand& wanted, Owner owner) noexcept {
         case GroupCommandKind::home: answer.id = take_home(command, owner); break;
         case GroupCommandKind::disable: answer.id = take_disable(); break;
         case GroupCommandKind::set_frame:
-        case GroupCommandKind::write_tool: answer = take_setting(command, owner); break;
+        case GroupCommandKind::write_tool:
+        case GroupCommandKind::track_frame: answer = take_setting(command, owner); break;
         case GroupCommandKind::set_position:
         case GroupCommandKind::set_position_relative:
             answer.error = set_position(command, owner);
@@ -190,6 +195,7 @@ CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcep
     begun_ = true;
     fire(GroupEvent::stop);
     if (members_.led()) run_.stop(command.dynamics, Override{});
+    tracking_.release();  // G-087: it ends in space
     return lock_;
 }
 
@@ -211,7 +217,8 @@ CommandId AxisGroup::take_interrupt(const GroupCommand& command) noexcept {
 
 Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexcept {
     const bool on_way = queue_.has_active() && begun_ && goes_a_way(queue_.active().command.kind);
-    if (on_way)
+    const bool follows = members_.led();  // it is interrupted on a frame that moves
+    if (on_way && !follows)
         for (std::size_t i = 0; i < most_members; ++i) {
             if (!members_.has(i)) continue;
             const double place = run_.of(i).position;
@@ -220,7 +227,8 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
         }
     if (on_way && !run_.fits(members_)) return {0, ErrorId::path_not_planned};
     if (queue_.has_active() || queue_.waiting() > 0) {
-        if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
+        if (!follows)
+            if (const auto error = members_.join(command.instance, owner); error != ErrorId::none) return {0, error};
         if (on_way) {
             run_.resume(factors());
         } else {
@@ -255,6 +263,7 @@ CommandId AxisGroup::take_disable() noexcept {
     if (members_.led() || searches) {
         disabling_ = id;
         run_.stop({}, Override{});
+        tracking_.release();
     } else {
         fire(GroupEvent::disable);
         queue_.record(id, Outcome::done);
@@ -275,6 +284,7 @@ void AxisGroup::let_go() noexcept {
     lock_ = 0;
     if (members_.led()) {
         halt();
+        tracking_.release();
     } else {
         abort_all();
         if (state_ == GroupState::GroupStopping) fire(GroupEvent::stopped);
@@ -291,6 +301,7 @@ void AxisGroup::shut_down(AxisRef axis) noexcept {
         abort_all();
         lock_ = 0;
         run_.stop({}, Override{});
+        tracking_.release();
     }
     publish();
 }
@@ -390,6 +401,8 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         put(kept.jerk, written->dynamics.jerk);
     } else if (const auto* limits = std::get_if<WriteSoftwareLimits>(&setting)) {
         error = set_limits(*limits, owner);
+    } else if (const auto* wanted = std::get_if<FollowPath>(&setting)) {
+        error = state_ == GroupState::GroupDisabled ? ErrorId::group_disabled : slaves_.take(*wanted, members_, owner);
     } else if (const auto* mode = std::get_if<SetDynamicsMode>(&setting)) {
         view_.reference_dynamics.percent = mode->percent;
     } else if (std::holds_alternative<HoldJog>(setting) || std::holds_alternative<WriteJoggingDynamics>(setting)) {

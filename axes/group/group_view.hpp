@@ -12,8 +12,22 @@ namespace taktwerk::axes {
 /// What held the path velocity down.
 enum class PathLimiter : std::uint8_t { none, command, axis, override_factor };
 
+/// Of a group on a frame that moves.
+struct TrackView {
+    AxisRef axis{};        ///< whose way it goes with; invalid: it does not
+    bool in_sync = false;  ///< it has come up to it
+    double lag = 0;        ///< u of the tool's point that it is behind
+};
+
+/// An axis that follows the length of a path.
+struct PathSlave {
+    AxisRef axis{};
+    CommandId id = 0;  ///< of the axis; 0: none
+    bool in_sync = false;
+};
+
 struct GroupView {
-    static constexpr std::size_t most_waiting = 16;
+    static constexpr std::size_t most_waiting = 16, most_slaves = 4;
 
     GroupState state = GroupState::GroupDisabled;
     std::uint16_t error = 0;  ///< alarm id or ErrorId that leads or led to GroupErrorStop, until it is reset; 0 = none
@@ -36,6 +50,10 @@ struct GroupView {
     // The tool's point, where kinematics and the numbers are there: X Y Z [u], RX RY RZ [rad]; velocities of it, u/s and rad/s about the axes.
     bool tool_known = false;
     std::array<double, 6> tool_set{}, tool_actual{}, tool_commanded{}, tool_velocity{}, tool_actual_velocity{};
+
+    TrackView track{};
+    std::array<PathSlave, most_slaves> slaves{};  ///< axes that follow the path's length
+    double path_gone = 0;                         ///< u of all paths, one behind the other, forwards
 
     // along the path
     double path_velocity = 0, path_acceleration = 0;

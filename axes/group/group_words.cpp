@@ -10,7 +10,7 @@ std::string_view name(PathLimiter limiter) noexcept {
 }
 
 std::string_view name(GroupCommandKind kind) noexcept {
-    constexpr std::array<std::string_view, 20> names{
+    constexpr std::array<std::string_view, 21> names{
         "none",
         "MC_MoveLinearAbsolute",
         "MC_MoveLinearRelative",
@@ -29,6 +29,7 @@ std::string_view name(GroupCommandKind kind) noexcept {
         "MC_GroupDisable",
         "MC_SetCoordinateTransform",
         "MC_GroupWriteToolData",
+        "MC_TrackConveyorBelt",
         "MC_GroupSetPosition",
         "MC_GroupSetPosition",
     };

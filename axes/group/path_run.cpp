@@ -6,6 +6,7 @@
 
 #include "axes/group/group_planner.hpp"
 #include "axes/group/member_limits.hpp"
+#include "axes/group/tool_motion.hpp"
 #include "axes/path_time/path_player.hpp"
 
 namespace taktwerk::axes {
@@ -95,7 +96,7 @@ void PathRun::tell() noexcept {
     in.told = in.link.orders.try_push(in.wish);
 }
 
-bool PathRun::restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps) noexcept {
+bool PathRun::restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps, const JointVector* from) noexcept {
     auto& in = *inside_;
     GroupOrder order;
     order.kind = GroupOrder::Kind::restart;
@@ -105,7 +106,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     for (std::size_t i = 0; i < most_members; ++i) {
         states_[i] = {};
         if (!members.has(i) || count == max_path_axes) continue;
-        order.from[count] = members.axis(i).view().set_position;
+        order.from[count] = from != nullptr ? (*from)[i] : members.axis(i).view().set_position;
         order.limits[count] = limits_of(members.axis(i));
         if (caps != nullptr) cap(order.limits[count], *caps, i);
         states_[i] = {order.from[count], 0, 0};
@@ -338,6 +339,24 @@ void PathRun::look() noexcept {
     see_limits();
 }
 
+bool PathRun::see_tool(ToolMotion& motion) const noexcept {
+    const auto& in = *inside_;
+    if (!exists_ || !in.player) return false;
+    const RunSection& run = in.track->section(in.player->part());
+    if (run.section.command == 0 || !run.through_arm) return false;
+    const PosePoint pose = pose_point(run.section.at(s_.position), run.section.chart);
+    const double v = s_.velocity, a = s_.acceleration;
+    motion.position = pose.position;
+    motion.orientation = pose.orientation;
+    motion.velocity = pose.linear[0] * v;
+    motion.acceleration = pose.linear[0] * a + pose.linear[1] * (v * v);
+    motion.turning = pose.angular[0] * v;
+    motion.turning_faster = pose.angular[0] * a + pose.angular[1] * (v * v);
+    motion.configuration = run.configuration;
+    motion.tool = run.carried.tool;
+    return true;
+}
+
 void PathRun::see_limits() noexcept {
     auto& in = *inside_;
     limiter_ = PathLimiter::none;
@@ -355,6 +374,8 @@ void PathRun::see_limits() noexcept {
     if (in.wish.factors.velocity < 1) limiter_ = PathLimiter::override_factor;
     else limiter_ = most >= in_use ? PathLimiter::axis : PathLimiter::command;
 }
+
+std::uint64_t PathRun::serial() const noexcept { return GroupLink::both(inside_->life, inside_->begun); }
 
 double PathRun::remaining_time() const noexcept {
     const auto& in = *inside_;

@@ -22,6 +22,7 @@ class Kinematics;
 class PathShelf;
 struct PathNote;
 struct Pose;
+struct ToolMotion;
 
 class PathRun {
 public:
@@ -34,8 +35,9 @@ public:
     void service();
 
     /// The members stand where they are; whatever was on the way is forgotten. `factors` from now on. False: not now, ask again in the next cycle.
-    /// `caps`: the members keep below these too, where they are above 0.
-    bool restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps = nullptr) noexcept;
+    /// `caps`: the members keep below these too, where they are above 0. `from`: not there, but where a frame that moves had them when its path was planned.
+    bool restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps = nullptr,
+                 const JointVector* from = nullptr) noexcept;
     /// What was planned is inside the limits that the members have now.
     [[nodiscard]] bool fits(const GroupMembers& members) const noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
@@ -87,7 +89,11 @@ public:
     /// Whose way the set-point is on: from the middle of a blend on the later one's (G-061). 0: none.
     [[nodiscard]] CommandId command() const noexcept { return command_; }
     [[nodiscard]] const MotionState& along() const noexcept { return s_; }
+    /// Of the path that along() is on: no two have the same.
+    [[nodiscard]] std::uint64_t serial() const noexcept;
     [[nodiscard]] MotionState of(std::size_t place) const noexcept { return states_[place]; }
+    /// Of a path of poses: how the tool's point goes it. False: it stands in front of it, or there is none.
+    [[nodiscard]] bool see_tool(ToolMotion& motion) const noexcept;
     /// With what that is gone; only while command() is not 0.
     [[nodiscard]] const CarriedTool& carried() const noexcept { return carried_; }
     /// Where the way of command() ends.

@@ -163,7 +163,12 @@ enum class ErrorId : std::uint16_t {
     path_not_selected = 0x004B,  ///< MC_PathSelect has not prepared it, or another selection has since
     path_in_use = 0x004C,        ///< a group goes it, or it waits to be gone
     path_program = 0x004D,       ///< its text has a fault
+    // Frames that move.
+    frame_in_use = 0x004E,    ///< a command of the group is in that frame, or waits
+    frame_lost = 0x004F,      ///< the axis that moves the frame has no position any more, or an error
+    frame_too_fast = 0x0050,  ///< the frame moves faster than the members can follow it
+    frame_limit = 0x0051,     ///< following it a member would cross a limit, or the arm would be out of reach
 };
-inline constexpr std::size_t error_id_count = 0x004E;
+inline constexpr std::size_t error_id_count = 0x0052;
 
 }  // namespace taktwerk::axes

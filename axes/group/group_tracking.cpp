@@ -1,0 +1,318 @@
+#include "axes/group/group_tracking.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "axes/group/group_equipment.hpp"
+#include "axes/group/member_limits.hpp"
+#include "axes/group/tool_motion.hpp"
+#include "axes/group/way_point.hpp"
+#include "axes/pose_math.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+/// Of the velocity that is there for the frame: a follower needs the rest to come up to it.
+constexpr double usable_share = 0.99;
+constexpr double digits = 1e-9, slack = 1e-6, jerk_slack = 1e-3;
+constexpr double endless = 1e9;
+
+struct Bounds {
+    UsableLimits limits;
+    double low = 0, high = 0;
+};
+Bounds bounds_of(const Axis& axis) noexcept {
+    const auto& limits = axis.config().limits;
+    const bool homed = axis.view().homed;
+    const double inf = std::numeric_limits<double>::infinity();
+    return {path_limits_of(axis), homed ? limits.position_min : -inf, homed ? limits.position_max : inf};
+}
+
+/// Where it comes to rest at the farthest, if it begins to brake now: first its acceleration is taken away, then it brakes with all it has.
+double rest_of(const MotionState& at, const UsableLimits& limits) noexcept {
+    const double sense = at.velocity < 0 ? -1 : 1;
+    const double faster = std::max(0.0, sense * at.acceleration), t = faster / limits.jerk;
+    const double speed = std::abs(at.velocity) + faster * t / 2;
+    const double until = std::abs(at.velocity) * t + faster * t * t / 3;
+    const double a = limits.acceleration, j = limits.jerk;
+    const double braking = speed * j >= a * a ? speed * speed / (2 * a) + speed * a / (2 * j) : speed * std::sqrt(speed / j);
+    return at.position + sense * (until + braking);
+}
+
+ToolMotion at_rest(const Kinematics& arm, const JointVector& members, const Pose& tool) noexcept {
+    MemberVector q{};
+    for (std::size_t i = 0; i < max_joints; ++i) q[i] = members[i];
+    const auto stand = arm.forward(joints_of(q), tool);
+    ToolMotion still;
+    still.position = position_of(stand.pose);
+    still.orientation = orientation_of(stand.pose);
+    still.configuration.branch = arm.configuration(joints_of(q)).branch;
+    still.tool = tool;
+    return still;
+}
+
+}  // namespace
+
+struct GroupTracking::Inside {
+    std::shared_ptr<const Kinematics> arm;
+    struct Product {
+        std::uint32_t serial = 0;
+        MasterTrack master;
+    };
+    std::array<Product, product_frames> products{};
+    Conveyance frame{};
+    ToolMotion still{};  // the last one
+    MemberVector q{};    // as given
+    std::optional<EndlessMotion> master;
+    bool planned = false;               // it comes from set-points
+    std::optional<MotionState> before;  // its way, a cycle ago
+    double drag = 0;                    // u of the tool's point per u of the frame's way
+};
+
+GroupTracking::GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm)
+    : axes_(axes), inside_(std::make_unique<Inside>()) {
+    inside_->arm = std::move(arm);
+}
+GroupTracking::GroupTracking(GroupTracking&&) noexcept = default;
+GroupTracking::~GroupTracking() = default;
+
+namespace {
+
+/// u of a table's axis in a turn.
+double turn_of(const Axis& axis) noexcept { return axis.config().modulo; }
+
+MasterTrack::Reading reading_of(const Axis& axis) noexcept { return axis.as_master(axis.config().encoder ? mcActualValue : mcSetValue); }
+
+/// Where it will be one period on, when the set-points of this cycle act. A set-point goes on with its acceleration; what is measured has been
+/// filtered, and is as old as its latch.
+std::optional<EndlessMotion> next_of(MasterTrack& track, const Axis& axis, Instant now, double period) noexcept {
+    auto reading = reading_of(axis);
+    if (!reading.planned) reading.age = std::max(0.0, to_seconds(now - reading.taken)) + period;
+    if (!track.next(reading, period)) return std::nullopt;
+    auto motion = track.motion();
+    if (!reading.planned) return motion;
+    motion.place.local += period * (motion.velocity + period * motion.acceleration / 2);
+    motion.velocity += period * motion.acceleration;
+    return motion;
+}
+
+}  // namespace
+
+ErrorId GroupTracking::take(FrameTrack& track, const GroupMembers& members) noexcept {
+    if (track.master.index >= axes_.size()) return ErrorId::invalid_axis;
+    if (inside_->arm == nullptr) return ErrorId::no_kinematics;
+    if (members.contains(track.master)) return ErrorId::invalid_axis;
+    if (track.kind == FrameTrack::Kind::table && !(turn_of(axes_[track.master.index]) > 0)) return ErrorId::not_supported;
+    const auto reading = reading_of(axes_[track.master.index]);
+    if (!reading.usable) return ErrorId::frame_lost;
+    track.reference = reading.motion.place;
+    track.serial = ++serials_;
+    return ErrorId::none;
+}
+
+void GroupTracking::watch(GroupFrames& frames, Instant now, Duration period) noexcept {
+    auto& in = *inside_;
+    const double seconds = to_seconds(period);
+    for (std::size_t i = 0; i < product_frames; ++i) {
+        const auto& track = frames.tracks[i];
+        auto& seen = in.products[i];
+        if (!track.moves()) continue;
+        if (seen.serial != track.serial) seen = {track.serial, {}};
+        const Axis& axis = axes_[track.master.index];
+        const double feed = reading_of(axis).feed;
+        if (const auto motion = next_of(seen.master, axis, now, seconds))
+            frames.product[i] = numbers_of(object_at(track, way(track.reference, motion->place, feed), turn_of(axis)));
+    }
+    if (in.master) in.before = {way(track_.reference, in.master->place, feed_), in.master->velocity, in.master->acceleration};
+    in.master.reset();
+    if (!follows()) return;
+    const Axis& axis = axes_[track_.master.index];
+    in.planned = reading_of(axis).planned;
+    if (axis.view().state != AxisState::ErrorStop) in.master = next_of(master_, axis, now, seconds);
+}
+
+ErrorId GroupTracking::prepare(const FrameTrack& track, const GroupFrames& frames, const GroupMembers& members) noexcept {
+    auto& in = *inside_;
+    const Axis& axis = axes_[track.master.index];
+    const auto reading = reading_of(axis);
+    if (!reading.usable || axis.view().state == AxisState::ErrorStop) return ErrorId::frame_lost;
+    clear();
+    track_ = track;
+    feed_ = reading.feed;
+    for (std::size_t i = 0; i < product_frames; ++i)  // its filter has settled already
+        if (in.products[i].serial == track.serial) master_ = in.products[i].master;
+    begun_at_ = way(track.reference, reading.motion.place, feed_);
+    way_ = {begun_at_, 0, 0};
+    const Pose machine = pose_of_numbers(frames.machine);
+    planned_ = seen_from(machine, object_at(track, begun_at_, turn_of(axis)));
+    in.frame = conveyance_of(track, machine, turn_of(axis));
+    const auto at = members.set_positions();
+    for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = at[i];
+    for (std::size_t i = 0; i < most_members; ++i) states_[i] = {at[i], 0, 0};
+    in.still = at_rest(*in.arm, at, Pose{});
+    phase_ = Phase::prepared;
+    see_room(members);
+    return ErrorId::none;
+}
+
+void GroupTracking::engage() noexcept {
+    if (phase_ != Phase::prepared) return;
+    phase_ = Phase::following;
+    fresh_ = true;
+}
+
+void GroupTracking::release() noexcept {
+    if (phase_ == Phase::prepared) phase_ = Phase::resting;
+    if (phase_ != Phase::following) return;
+    phase_ = Phase::leaving;
+    leaving_ = plan_stop(way_, rest_);
+    left_ = {};
+}
+
+void GroupTracking::clear() noexcept {
+    phase_ = Phase::off;
+    fault_ = ErrorId::none;
+    fresh_ = false;
+    difference_.clear();
+    inside_->master.reset();
+    inside_->before.reset();
+    master_.forget();
+}
+
+JoggingDynamics GroupTracking::path_caps(const GroupMembers& members) const noexcept {
+    JoggingDynamics caps;
+    for (std::size_t i = 0; i < most_members; ++i) {
+        if (!members.has(i)) continue;
+        const auto limits = path_limits_of(members.axis(i));
+        caps.velocity[i] = path_share * limits.velocity;
+        caps.acceleration[i] = caps.deceleration[i] = path_share * limits.acceleration;
+        caps.jerk[i] = path_share * limits.jerk;
+    }
+    return caps;
+}
+
+/// What the frame's way may do: its half of each member, as the arm stands.
+void GroupTracking::see_room(const GroupMembers& members) noexcept {
+    auto& in = *inside_;
+    const MotionState gone{way_.position - begun_at_, 0, 0};
+    const auto point = carried_by(in.frame, gone, in.still).position;
+    const auto drag = drag_at(in.frame, point);
+    in.drag = Eigen::Vector3d(drag.position[0][0], drag.position[0][1], drag.position[0][2]).norm();
+    const auto d = in.arm->derivatives(joints_of(in.q), in.still.tool, drag);
+    MotionLimits most{endless, endless, endless, endless};
+    for (std::size_t i = 0; i < in.arm->joint_count(); ++i) {
+        if (!members.has(i)) continue;
+        const auto limits = path_limits_of(members.axis(i));
+        const double share = 1 - path_share, first = std::abs(d.of[0][i]);
+        const double bent = std::abs(d.of[1][i]) * way_.velocity * way_.velocity;
+        if (first < 1e-12) continue;
+        most.velocity = std::min(most.velocity, share * limits.velocity / first);
+        most.acceleration = std::min(most.acceleration, std::max(share * limits.acceleration - bent, 0.1 * limits.acceleration) / first);
+        most.jerk = std::min(most.jerk, share * limits.jerk / first);
+    }
+    most.deceleration = most.acceleration;
+    rest_ = most;
+}
+
+/// What the frame's way lacks of its master runs down beside it, whatever the master does meanwhile; only where both together would become too fast it is
+/// thought over.
+MotionState GroupTracking::come_nearer(const MotionState& goal, Duration cycle) noexcept {
+    auto& in = *inside_;
+    const auto plan = [&](const MotionState& from, double beside) {
+        const double least = 0.01 * rest_.velocity, a = rest_.acceleration / 2, j = rest_.jerk / 2;
+        const SignLimits up{std::max(rest_.velocity - beside, least), a, a, j}, down{std::max(rest_.velocity + beside, least), a, a, j};
+        const auto made = Difference::plan(from, {up, down});
+        if (made.error == PlanError::none) difference_.run(made.profile);
+    };
+    if (fresh_) {
+        const double t = to_seconds(cycle);
+        const MotionState told{goal.position - t * (goal.velocity - t * goal.acceleration / 2), goal.velocity - t * goal.acceleration,
+                               goal.acceleration};
+        const auto was = in.before.value_or(told);
+        plan({way_.position - was.position, way_.velocity - was.velocity, way_.acceleration - was.acceleration}, was.velocity);
+        fresh_ = false;
+    } else if (!difference_.finished()) {
+        const auto& now = difference_.state();
+        const double speed = goal.velocity + now.velocity, faster = goal.acceleration + now.acceleration;
+        const double soon = std::abs(speed) + (speed * faster > 0 ? faster * faster / rest_.jerk : 0);
+        if (soon > usable_share * rest_.velocity) plan(now, goal.velocity);
+    }
+    const MotionState next = difference_.advance(cycle);
+    return difference_.finished() ? MotionState{} : next;
+}
+
+void GroupTracking::follow(double period, Duration cycle) noexcept {
+    auto& in = *inside_;
+    const auto let_go = [&](ErrorId why) {
+        fault_ = why;
+        release();
+    };
+    if (phase_ == Phase::following && !in.master) let_go(ErrorId::frame_lost);
+    if (phase_ == Phase::following && std::abs(in.master->velocity) > usable_share * rest_.velocity) let_go(ErrorId::frame_too_fast);
+    if (phase_ == Phase::following) {
+        const auto& master = *in.master;
+        const MotionState goal{way(track_.reference, master.place, feed_), master.velocity, master.acceleration};
+        const MotionState beside = come_nearer(goal, cycle);
+        const MotionState next{goal.position + beside.position, goal.velocity + beside.velocity, goal.acceleration + beside.acceleration};
+        // What is measured trembles: of that the jerk is what it is.
+        const double bend = std::abs(next.acceleration - way_.acceleration) / period;
+        // A master that is planned behind the group and bends harder than it may: what was foreseen of it does not fit to what it does.
+        const double torn = std::abs(next.velocity - way_.velocity - period * (next.acceleration + way_.acceleration) / 2);
+        const bool harder = in.planned && (bend > rest_.jerk * (1 + slack) + digits || torn > rest_.jerk * period * period / 2 + digits ||
+                                           std::abs(next.acceleration) > rest_.acceleration * (1 + slack));
+        if (harder) let_go(ErrorId::frame_too_fast);
+        else way_ = next;
+    }
+    if (phase_ == Phase::following) return;
+    if (phase_ != Phase::leaving) return;
+    left_ += cycle;
+    const double t = to_seconds(left_);
+    const auto& profile = leaving_.profile;
+    way_ = profile.at(std::min(t, profile.duration()));
+    if (leaving_.error != PlanError::none || t < profile.duration()) return;
+    way_.velocity = way_.acceleration = 0;
+    phase_ = Phase::resting;
+}
+
+ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members, Duration period) noexcept {
+    auto& in = *inside_;
+    if (still != nullptr) in.still = *still;
+    else in.still.velocity = in.still.acceleration = in.still.turning = in.still.turning_faster = Eigen::Vector3d::Zero();
+    see_room(members);
+    follow(to_seconds(period), period);
+    const MotionState gone{way_.position - begun_at_, way_.velocity, way_.acceleration};
+    const ToolMotion at = carried_by(in.frame, gone, in.still);
+    const auto stand = in.arm->inverse(pose_of(at.position, at.orientation), at.tool, at.configuration, joints_of(in.q));
+    if (!stand.ok() || in.arm->singularity(stand.axes).measure < least_singularity) return ErrorId::frame_limit;
+    const auto numbers = [](const Eigen::Vector3d& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
+    PathDerivatives motion;
+    motion.position = {numbers(at.velocity), numbers(at.acceleration), {}};
+    motion.turn = {numbers(at.turning), numbers(at.turning_faster), {}};
+    const auto d = in.arm->derivatives(stand.axes, at.tool, motion);
+    if (!d.miss.ok()) return ErrorId::frame_limit;
+    std::array<MotionState, most_members> next = states_;
+    for (std::size_t i = 0; i < in.arm->joint_count(); ++i) {
+        if (!members.has(i)) continue;
+        next[i] = {stand.axes[i], d.of[0][i], d.of[1][i]};
+        const auto bounds = bounds_of(members.axis(i));
+        const double rests = rest_of(next[i], bounds.limits);
+        const double bend = std::abs(next[i].acceleration - states_[i].acceleration);
+        const bool smooth = !in.planned || bend <= bounds.limits.jerk * to_seconds(period) * (1 + jerk_slack) + digits;
+        const bool inside = smooth && std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
+                            std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
+                            (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
+        if (!inside) return ErrorId::frame_limit;
+    }
+    states_ = next;
+    for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = stand.axes[i];
+    return ErrorId::none;
+}
+
+void GroupTracking::publish(GroupView& view) const noexcept {
+    view.track = {active() ? track_.master : AxisRef{}, in_sync(),
+                  phase_ == Phase::following ? -difference_.state().position * inside_->drag : 0};
+}
+
+}  // namespace taktwerk::axes
