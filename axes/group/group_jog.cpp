@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/group/group_equipment.hpp"
 #include "axes/group/group_members.hpp"
 
 namespace taktwerk::axes {
@@ -15,27 +16,40 @@ double dot(const JointVector& a, const JointVector& b) noexcept {
 }
 bool is_none(const JointVector& direction) noexcept { return dot(direction, direction) == 0; }
 
+/// Turns of the tool are as fast as its slowest turning member is jogged: each of them has to have a velocity.
+bool turns_are_said(const JogGround& ground) noexcept {
+    for (std::size_t i = 0; i < ground.arm.joints; ++i)
+        if (ground.arm.joint[i].rotary && !(ground.dynamics.velocity[i] > 0)) return false;
+    return true;
+}
+
+ErrorId refuse_direction(const JointVector& direction, const JogGround& ground) noexcept {
+    constexpr std::size_t pose_numbers = 6, first_turn = 3;
+    bool turns = false;
+    for (std::size_t i = 0; i < most_members; ++i) {
+        const double part = direction[i];
+        const bool slot = ground.frame == mcACS ? ground.members.has(i) : i < pose_numbers;
+        if (!(std::abs(part) <= 1) || (part != 0 && !slot)) return ErrorId::invalid_parameter;
+        if (ground.frame == mcACS && part != 0 && !(ground.dynamics.velocity[i] > 0)) return ErrorId::invalid_velocity;
+        turns = turns || (i >= first_turn && part != 0);
+    }
+    if (ground.frame == mcACS || is_none(direction)) return ErrorId::none;
+    const bool said = ground.dynamics.path.velocity > 0 && (!turns || turns_are_said(ground));
+    return said ? ErrorId::none : ErrorId::invalid_velocity;
+}
+
 }  // namespace
 
-ErrorId GroupJog::refuse(const GroupCommand& command, const JoggingDynamics& dynamics, const GroupMembers& members) noexcept {
-    constexpr std::size_t pose_numbers = 6;
-    for (std::size_t i = 0; i < most_members; ++i) {
-        const double part = command.target[i];
-        const bool slot = command.frame == mcACS ? members.has(i) : i < pose_numbers;
-        if (!(std::abs(part) <= 1) || (part != 0 && !slot)) return ErrorId::invalid_parameter;
-        if (command.frame == mcACS && part != 0 && !(dynamics.velocity[i] > 0)) return ErrorId::invalid_velocity;
-    }
+ErrorId GroupJog::refuse(const GroupCommand& command, const JogGround& ground) noexcept {
     if (is_none(command.target)) return ErrorId::invalid_parameter;
+    const HoldJog pressed{0, command.target, command.jog.velocity, command.jog.acceleration};
+    if (const auto error = refuse(pressed, ground); error != ErrorId::none) return error;
     if (!(command.jog.linear >= 0) || !(command.jog.angular >= 0)) return ErrorId::invalid_parameter;
-    if (const auto error = refuse({.velocity = command.jog.velocity, .acceleration = command.jog.acceleration}); error != ErrorId::none)
-        return error;
-    if (command.frame != mcACS && !(dynamics.path.velocity > 0)) return ErrorId::invalid_velocity;
     return command.buffer_mode == mcAborting ? ErrorId::none : ErrorId::buffer_mode_not_supported;
 }
 
-ErrorId GroupJog::refuse(const HoldJog& held) noexcept {
-    for (const double part : held.direction)
-        if (!(std::abs(part) <= 1)) return ErrorId::invalid_parameter;
+ErrorId GroupJog::refuse(const HoldJog& held, const JogGround& ground) noexcept {
+    if (const auto error = refuse_direction(held.direction, ground); error != ErrorId::none) return error;
     const bool usable = held.velocity >= 0 && held.velocity <= 1 && held.acceleration > 0 && held.acceleration <= 1;
     return usable ? ErrorId::none : ErrorId::invalid_override;
 }

@@ -9,6 +9,15 @@
 namespace taktwerk::axes {
 
 class GroupMembers;
+struct ArmFacts;
+
+/// Of what a direction is asked.
+struct JogGround {
+    MC_CoordSystem frame = mcACS;
+    const JoggingDynamics& dynamics;
+    const GroupMembers& members;
+    const ArmFacts& arm;
+};
 
 class GroupJog {
 public:
@@ -19,9 +28,10 @@ public:
     [[nodiscard]] static bool same_way(const JointVector& a, const JointVector& b) noexcept;
 
     /// Errors: invalid_parameter (a direction that is none, beyond -1..1, of a slot without a member; a negative reach; ACS of a vector), invalid_velocity
-    /// (there are no jogging dynamics for it), invalid_override.
-    [[nodiscard]] static ErrorId refuse(const GroupCommand& command, const JoggingDynamics& dynamics, const GroupMembers& members) noexcept;
-    [[nodiscard]] static ErrorId refuse(const HoldJog& held) noexcept;
+    /// (there are no jogging dynamics for it: nothing moves faster than somebody has said), invalid_override.
+    [[nodiscard]] static ErrorId refuse(const GroupCommand& command, const JogGround& ground) noexcept;
+    /// Of another direction the same is asked as of the first one; 0 lets go, and is never refused.
+    [[nodiscard]] static ErrorId refuse(const HoldJog& held, const JogGround& ground) noexcept;
 
     /// It is pressed: `lease` from now on.
     void press(const GroupCommand& command, Duration lease) noexcept;

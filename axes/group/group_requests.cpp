@@ -105,7 +105,8 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     if (is_setting(command.kind)) {
         if (const auto error = refuse_equipment(command); error != ErrorId::none) return error;
         if (command.execution == mcImmediately) return ErrorId::none;
-        if (state_ == GroupState::GroupStopping) return ErrorId::state_forbids;
+        // No motion of the group ends there, so nothing would ever be behind it.
+        if (state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming) return ErrorId::state_forbids;
         return queue_.full() ? ErrorId::queue_full : ErrorId::none;
     }
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
@@ -118,7 +119,8 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     }
     if (command.kind == GroupCommandKind::jog) {
         const auto error = refuse_frame(command, config_.kinematics.get(), members_);
-        return error != ErrorId::none ? error : GroupJog::refuse(command, view_.jogging_dynamics, members_);
+        return error != ErrorId::none ? error
+                                      : GroupJog::refuse(command, {command.frame, view_.jogging_dynamics, members_, equipment_.arm});
     }
     if (goes_a_way(command.kind))
         if (const auto error = refuse_way(command); error != ErrorId::none) return error;
@@ -326,8 +328,9 @@ void AxisGroup::tend_jog(Duration period) noexcept {
 ErrorId AxisGroup::set_jog(const GroupSetting& setting) noexcept {
     if (const auto* held = std::get_if<HoldJog>(&setting)) {
         if (!jogs() || held->id != queue_.active().id) return ErrorId::unknown_command;
-        const auto error = GroupJog::refuse(*held);
-        if (error == ErrorId::none) jog_.hold(*held);
+        const auto error = GroupJog::refuse(*held, {queue_.active().command.frame, view_.jogging_dynamics, members_, equipment_.arm});
+        // What cannot be gone is no reason to go on with what was held before.
+        jog_.hold(error == ErrorId::none ? *held : HoldJog{.id = held->id});
         return error;
     }
     return write_jogging(std::get<WriteJoggingDynamics>(setting).dynamics, view_.jogging_dynamics);

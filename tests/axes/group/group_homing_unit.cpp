@@ -91,6 +91,24 @@ TEST(GroupHoming, NothingElseMeanwhileButAStop) {
     EXPECT_FALSE(rig.axis(1).homed);
 }
 
+// G-028: a search has no motion behind which a setting could have its turn. One that waited would never be done, and everything behind it neither.
+TEST(GroupHoming, ASettingDoesNotWaitForItsEnd) {
+    HomingRig rig(2);
+    const auto home = rig.give(HomingRig::home());
+    ASSERT_EQ(home.error, ErrorId::none);
+    GroupCommand setting{.kind = GroupCommandKind::set_frame, .frame = mcPCS, .target = {1, 2, 3}, .execution = mcQueued};
+    EXPECT_EQ(rig.submit(setting).error, ErrorId::state_forbids);
+    setting.execution = mcDelayed;
+    EXPECT_EQ(rig.submit(setting).error, ErrorId::state_forbids);
+    setting.execution = mcImmediately;
+    EXPECT_EQ(rig.submit(setting).error, ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.status(home.id) == CommandStatus::done; }, 5000));
+    rig.run(3);
+    EXPECT_EQ(rig.view().queued_count, 0);
+    const auto move = rig.give(line({12, 20}, 50, mcBuffered));
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 1000)) << "nothing is in front of it";
+}
+
 // A member that finds no reference, or refuses: the command ends with its reason; those behind it have not moved.
 TEST(GroupHoming, AMemberThatFailsEndsIt) {
     HomingRig rig(3);

@@ -120,6 +120,46 @@ TEST(GroupJog, MembersGoOnOneLineAndChangeItAtRest) {
     EXPECT_EQ(rig.view().last_id, rig.answer.id) << "one command";
 }
 
+// Nothing is jogged faster than somebody has said (docs/motion/group-decisions.md): a member without a jogging velocity is not jogged, also where the
+// keys come to it while another one is held; and what was held before lets go.
+TEST(GroupJog, AMemberWithoutAJoggingVelocityIsNeverJogged) {
+    auto dynamics = slow_jogging();
+    dynamics.velocity = {20};
+    JogRig rig(2, {}, dynamics);
+    EXPECT_EQ(rig.submit({.kind = GroupCommandKind::jog, .target = {0, 1}}).error, ErrorId::invalid_velocity);
+    rig.press({1, 0});
+    ASSERT_TRUE(rig.until_held([&] { return rig.axis(0).set_velocity > 19.9; }, 600));
+    for (const JointVector& other : {JointVector{0, 1}, JointVector{1, 1}}) {
+        EXPECT_EQ(rig.set(HoldJog{.id = rig.answer.id, .direction = other}), ErrorId::invalid_velocity);
+    }
+    EXPECT_EQ(rig.set(HoldJog{.id = rig.answer.id, .direction = {0, 0, 1}}), ErrorId::invalid_parameter) << "a slot without a member";
+    rig.run(150);  // the lease of 200 ms has not run out
+    EXPECT_LT(rig.axis(0).set_velocity, 15) << "let go";
+    rig.press({});
+    ASSERT_TRUE(rig.until_held([&] { return rig.view().state == GroupStandby; }, 500));
+    EXPECT_EQ(rig.status(rig.answer.id), CommandStatus::done);
+    rig.run(2000);
+    EXPECT_EQ(rig.point()[1], 0);
+}
+
+// Turns of the tool are as fast as its slowest turning member is jogged; so each of them has to have a velocity. Ways of the tool have their own.
+TEST(GroupJog, AToolTurnsOnlyAsFastAsSomebodyHasSaid) {
+    const auto arms = every_kind_of_arm();
+    const auto& arm = *std::find_if(arms.begin(), arms.end(), [](const JogArm& a) { return a.name == "cartesian"; });
+    auto dynamics = slow_jogging();
+    dynamics.velocity[3] = 0;  // the turning one
+    JogRig rig(axes_of(arm), arm_of(arm.description), dynamics);
+    rig.frame = mcMCS;
+    rig.press({0, 0, 0, 0, 0, 1});
+    EXPECT_EQ(rig.answer.error, ErrorId::invalid_velocity);
+    rig.press({1});
+    ASSERT_EQ(rig.answer.error, ErrorId::none);
+    ASSERT_TRUE(rig.until_held([&] { return rig.axis(0).set_velocity > 19.9; }, 600));
+    EXPECT_EQ(rig.set(HoldJog{.id = rig.answer.id, .direction = {0, 0, 0, 0, 0, 1}}), ErrorId::invalid_velocity);
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 500));
+    EXPECT_EQ(rig.point()[3], 0);
+}
+
 std::vector<AxisConfig> homed_axes(std::size_t count, double high) {
     auto axes = GroupRig::named(count);
     for (auto& axis : axes) {
