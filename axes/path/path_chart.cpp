@@ -54,8 +54,9 @@ PosePoint pose_point(const PathPoint& point, const PathChart& chart) noexcept {
     p.position = point.at.head<3>();
     p.linear = {point.first.head<3>(), point.second.head<3>(), point.third.head<3>()};
     p.angular = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-    if (chart.lever <= 0) return p;
     const Eigen::Quaterniond reference(chart.reference[0], chart.reference[1], chart.reference[2], chart.reference[3]);
+    p.orientation = reference;
+    if (chart.lever <= 0) return p;
     const double scale = 1 / chart.lever;
     const Eigen::Vector3d r = scale * point.at.segment<3>(3), r1 = scale * point.first.segment<3>(3);
     const Eigen::Vector3d r2 = scale * point.second.segment<3>(3), r3 = scale * point.third.segment<3>(3);

@@ -12,7 +12,8 @@
 
 namespace taktwerk::axes {
 
-/// Numbers 3..5 of a path are lever * (rotation vector of reference^-1 * orientation). A lever of 0: the path has no orientation.
+/// Numbers 3..5 of a path are lever * (rotation vector of reference^-1 * orientation). A lever of 0: the path does not turn,
+/// and keeps the reference: of an arm that cannot turn, as it is mounted and as its tool is.
 struct PathChart {
     std::array<double, 4> reference{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
     double lever = 0;                             ///< u/rad

@@ -332,6 +332,39 @@ TEST(GroupTools, NumbersThatAreNotThereAreRefused) {
     EXPECT_EQ(rig.set(WriteBodies{9, {}}), ErrorId::invalid_parameter);
 }
 
+// An arm that cannot turn its tool keeps the tool turned as it is: a camera that is screwed on askew, a machine that is mounted askew. In both
+// positions by hand; the paths are those of any arm.
+TEST(GroupTools, AnArmThatCannotTurnCarriesATurnedTool) {
+    GroupRig rig(3, cartesian_arm());
+    rig.enable();
+    ASSERT_EQ(rig.give(write_tool(1, {5, 6, 7, 0, 0, 0.3})).error, ErrorId::none);
+    ASSERT_EQ(rig.set(SelectTool{1}), ErrorId::none);
+    const auto by = rig.give(in(mcMCS, line_by({3, 2, 1}, 50)));
+    ASSERT_TRUE(done(rig, by.id)) << static_cast<int>(rig.error_of(by.id));
+    expect_at(rig, 3, 2, 1);
+    const auto to = rig.give(in(mcMCS, line({15, 16, 17, 0, 0, 0.3}, 50)));  // of the tool's point
+    ASSERT_TRUE(done(rig, to.id));
+    expect_at(rig, 10, 10, 10);
+    GroupCommand arc = in(mcMCS, line({25, 16, 17, 0, 0, 0.3}, 50));
+    arc.kind = GroupCommandKind::circular_absolute;
+    arc.circle = {.mode = mcBORDER, .aux = {20, 21, 17}};
+    const auto half = rig.give(arc);
+    ASSERT_TRUE(done(rig, half.id));
+    expect_at(rig, 20, 10, 10);
+}
+TEST(GroupTools, AMachineThatIsMountedTurnedGoesItsLines) {
+    KinematicsDescription turned{.arm = CartesianAxes{}};
+    turned.base = pose_of_numbers({100, 0, 0, 0, 0, right_angle});  // its X is the machine's Y
+    GroupRig rig(3, arm_of(turned));
+    rig.enable();
+    const auto by = rig.give(in(mcMCS, line_by({3, 2, 1}, 50)));
+    ASSERT_TRUE(done(rig, by.id)) << static_cast<int>(rig.error_of(by.id));
+    expect_at(rig, 2, -3, 1);
+    const auto to = rig.give(in(mcMCS, line({90, 5, 4, 0, 0, right_angle}, 50)));
+    ASSERT_TRUE(done(rig, to.id));
+    expect_at(rig, 5, 10, 4);
+}
+
 // G-078 by hand: RZ = 90 about Z takes X to Y; RY = 90 then about the new Y, which is -X, takes the new X (Y) to -Z; and RX = 90 about that X.
 TEST(GroupFrames, ThreeAnglesTurnAboutZThenTheNewYThenTheNewX) {
     const auto seen = [](const SixNumbers& six, const std::array<double, 3>& point) {
