@@ -50,13 +50,10 @@ inline std::vector<JogArm> every_kind_of_arm() {
                        {10, 15, 10, 20, 40, 10});
     wrist.description.joints[2].zero = std::numbers::pi / 2;
     arms.push_back(wrist);
-    // Universal Robots, UR5e, DH parameters in mm.
-    const SixJoints::Table ur{{{{0, 162.5, 0, std::numbers::pi / 2},
-                                {0, 0, -425, 0},
-                                {0, 0, -392.2, 0},
-                                {0, 133.3, 0, std::numbers::pi / 2},
-                                {0, 99.7, 0, -std::numbers::pi / 2},
-                                {0, 99.6, 0, 0}}}};
+    // Universal Robots, UR5e, DH parameters in mm: a, alpha, d, theta.
+    constexpr double right = std::numbers::pi / 2;
+    const SixJoints::Table ur{
+        {{{0, right, 162.5, 0}, {-425, 0, 0, 0}, {-392.2, 0, 0, 0}, {0, right, 133.3, 0}, {0, -right, 99.7, 0}, {0, 0, 99.6, 0}}}};
     arms.push_back(arm_in_degrees("six_without_wrist", SixJoints{.geometry = ur}, six, {20, -80, 80, -60, -70, 10}));
     return arms;
 }
