@@ -37,6 +37,14 @@ ErrorId within(const MemberVector& at, const MoveSpace& space) noexcept {
     return space.arm != nullptr ? error_of(space.arm->limits_of(joints_of(at))) : ErrorId::none;
 }
 
+/// Whether the arm puts the members where they stand. Those of a beam that is askew it does not: they would jump onto the path.
+bool same_place(const MemberVector& a, const MemberVector& b, std::size_t members) noexcept {
+    constexpr double digits = 1e-8;  // of a way through the arm and back, 0.01 from a singularity
+    for (std::size_t i = 0; i < members; ++i)
+        if (!(std::abs(a[i] - b[i]) <= digits * std::max(1.0, std::abs(b[i])))) return false;
+    return true;
+}
+
 Configuration any_turns(Branch branch) noexcept {
     Configuration c;
     c.branch = branch;
@@ -129,6 +137,7 @@ void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& fro
         if (shape.error == ErrorId::none && space.arm->singularity(joints_of(w.q)).measure < least_singularity)
             shape.error = ErrorId::singular_path;
         if (shape.error == ErrorId::none) shape.error = within(w.q, space);
+        if (shape.error == ErrorId::none && i == 0 && !same_place(w.q, from.members, space.members)) shape.error = ErrorId::out_of_reach;
         if (shape.error != ErrorId::none) return;
         shape.members.push_back(near = w.q);
     }

@@ -305,6 +305,30 @@ TEST(GroupPath, AScaraDrawsALineAndAnArc) {
     }
 }
 
+// A beam that is askew stands where no pose has it: a path of the tool would begin with a step of its motors. Its members alone bring it square first.
+TEST(GroupPath, ABeamThatIsAskewGoesNoPathOfTheTool) {
+    GroupRig rig(4, arm_of({.arm = BeamGantryShape{.span = 800}}));
+    rig.enable();
+    const auto goes = [&](const GroupCommand& command) {
+        const auto id = rig.give(command).id;
+        EXPECT_TRUE(rig.until([&] { return rig.status(id) == CommandStatus::done || rig.status(id) == CommandStatus::error; }, 5000));
+        rig.run(3);
+        return rig.error_of(id);
+    };
+    ASSERT_EQ(goes(line({20, 25, 30, 40}, 50)), ErrorId::none) << "the members, of which the second guide's is 5 ahead";
+    auto by = line_by({10, 0, 0}, 50);
+    by.frame = mcMCS;
+    EXPECT_EQ(goes(by), ErrorId::out_of_reach);
+    by.kind = GroupCommandKind::circular_relative;
+    by.circle = {.mode = mcBORDER, .aux = {5, 5, 0}};
+    EXPECT_EQ(goes(by), ErrorId::out_of_reach);
+    EXPECT_EQ(rig.point()[1], 25) << "nothing has moved";
+    ASSERT_EQ(goes(line({20, 20, 30, 40}, 50)), ErrorId::none);
+    EXPECT_EQ(goes(by), ErrorId::none);
+    EXPECT_NEAR(rig.point()[0], 30, 1e-9);
+    EXPECT_NEAR(rig.point()[1], 30, 1e-9);
+}
+
 // G-044, G-024: what the whole way shows is refused before anything moves: through the middle of the arm; beyond its reach in between; beyond a
 // software limit between two ends that are inside.
 TEST(GroupPath, WhatTheWholeWayShowsIsRefusedBeforeItStarts) {
