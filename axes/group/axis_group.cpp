@@ -131,8 +131,9 @@ void AxisGroup::watch_reset() noexcept {
 }
 
 void AxisGroup::plan(Instant, Duration period) noexcept {
-    if (state_ == GroupState::GroupHoming) go_on_homing();
-    const bool member_stops = state_ == GroupState::GroupStopping && homing_.moves(members_);
+    if (state_ == GroupState::GroupHoming && disabling_ == 0) go_on_homing();
+    const bool searched = state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming;
+    const bool member_stops = searched && homing_.moves(members_);
     if (!member_stops && (members_.led() || state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0)) {
         if (run_.over() || !members_.led()) settle();
         if (members_.led()) {

@@ -250,7 +250,8 @@ CommandId AxisGroup::take_disable() noexcept {
     abort_all();
     lock_ = 0;
     const auto id = queue_.next_id();
-    if (members_.led()) {
+    const bool searches = state_ == GroupState::GroupHoming && homing_.moves(members_);
+    if (members_.led() || searches) {
         disabling_ = id;
         run_.stop({}, Override{});
     } else {

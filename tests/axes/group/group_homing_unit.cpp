@@ -109,6 +109,32 @@ TEST(GroupHoming, ASettingDoesNotWaitForItsEnd) {
     ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 1000)) << "nothing is in front of it";
 }
 
+// G-007: Done of MC_GroupDisable comes at rest, also where a search is under way.
+TEST(GroupHoming, DisabledOnlyWhenTheMemberStands) {
+    HomingRig rig(2);
+    const auto home = rig.give(HomingRig::home());
+    rig.run(30);
+    ASSERT_EQ(rig.axis(0).state, AxisState::Homing);
+    const auto disable = rig.submit(simply(GroupCommandKind::disable));
+    ASSERT_EQ(disable.error, ErrorId::none);
+    EXPECT_EQ(rig.status(home.id), CommandStatus::aborted);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::disable)).error, ErrorId::state_forbids);
+    ASSERT_TRUE(rig.until(
+        [&] {
+            const bool over = rig.status(disable.id) == CommandStatus::done;
+            EXPECT_EQ(rig.view().state == GroupDisabled, over);
+            if (over) {
+                EXPECT_EQ(rig.axis(0).state, AxisState::Standstill);
+            }
+            return over;
+        },
+        500));
+    EXPECT_FALSE(rig.axis(0).homed);
+    rig.enable();
+    rig.run(3);
+    EXPECT_EQ(rig.view().state, GroupStandby);
+}
+
 // A member that finds no reference, or refuses: the command ends with its reason; those behind it have not moved.
 TEST(GroupHoming, AMemberThatFailsEndsIt) {
     HomingRig rig(3);
