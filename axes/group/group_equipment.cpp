@@ -8,8 +8,11 @@
 namespace taktwerk::axes {
 namespace {
 
+/// What is larger is no place of a machine; an arm computes with none (Kinematics).
+constexpr double largest = 1e12;
+
 bool finite(const SixNumbers& six) noexcept {
-    return std::all_of(six.begin(), six.end(), [](double value) { return std::isfinite(value); });
+    return std::all_of(six.begin(), six.end(), [](double value) { return std::abs(value) <= largest; });
 }
 SixNumbers six_of(const JointVector& target) noexcept { return {target[0], target[1], target[2], target[3], target[4], target[5]}; }
 

@@ -167,6 +167,8 @@ TEST(GroupFrames, WhatCannotBeSetIsRefused) {
         EXPECT_EQ(rig.submit(set_frame(frame, {1})).error, ErrorId::not_supported) << static_cast<int>(frame);
     EXPECT_EQ(rig.submit(set_frame(static_cast<MC_CoordSystem>(mcPCS_8 + 1), {1})).error, ErrorId::invalid_parameter);
     EXPECT_EQ(rig.submit(set_frame(mcPCS, {std::nan("")})).error, ErrorId::invalid_position);
+    EXPECT_EQ(rig.submit(set_frame(mcPCS, {1e13})).error, ErrorId::invalid_position) << "no place of a machine";
+    EXPECT_EQ(rig.submit(write_tool(1, {1e13})).error, ErrorId::invalid_position);
     EXPECT_EQ(rig.submit(set_frame(mcPCS, {1})).error, ErrorId::none) << "also of a disabled group: nothing moves";
     EXPECT_EQ(rig.submit(write_tool(0, {})).error, ErrorId::invalid_tool);
     EXPECT_EQ(rig.submit(write_tool(32, {})).error, ErrorId::invalid_tool);
