@@ -11,6 +11,7 @@
 #include "config/machine_file/group_equipment_tables.hpp"
 #include "config/machine_file/group_quantities.hpp"
 #include "config/reading/codecs.hpp"
+#include "core/nearest_name.hpp"
 
 namespace taktwerk::config {
 namespace {
@@ -183,6 +184,28 @@ Table<ArmEntry> arm_table() {
     return table;
 }
 
+/// Names that mean nothing, before anything is read in an axis' unit.
+void check_names(Reader& reader, const Node& group, const std::string& name) {
+    const auto* members = group.find("members");
+    if (members == nullptr || members->kind != Node::Kind::list) return;
+    std::vector<std::string> known;
+    for (const auto& member : members->items) {
+        if (std::find(known.begin(), known.end(), member.text) != known.end())
+            reader.problem(member.at, "config.group_member", "axis '" + member.text + "' is twice a member of group " + name,
+                           "name each axis once, in the order of the joints");
+        else known.push_back(member.text);
+    }
+    const auto* kinematics = group.find("kinematics");
+    const auto* joints = kinematics != nullptr ? kinematics->find("joints") : nullptr;
+    if (joints == nullptr) return;
+    for (const auto& joint : joints->entries) {
+        if (std::find(known.begin(), known.end(), joint.key) != known.end()) continue;
+        const auto near = nearest_name(joint.key, known);
+        reader.problem(joint.at, "config.group_joint", "'" + joint.key + "' is no member of group " + name,
+                       near.empty() ? "name a member, or add the axis to `members`" : "did you mean '" + near + "'?");
+    }
+}
+
 }  // namespace
 
 Table<GroupEntry> group_table() {
@@ -224,6 +247,7 @@ Table<GroupEntry> group_table() {
         const auto* unit = node.find("unit");
         const auto& known = axis_units();
         reader.axis_unit = unit != nullptr && std::find(known.begin(), known.end(), unit->text) != known.end() ? unit->text : g.unit;
+        check_names(reader, node, g.group.name);
     };
     table.after = [](Reader& reader, const Node& node, G& g) { equip(reader, node, g); };
     return table;
@@ -259,13 +283,13 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
             joint.high = own->limits->second * joint.unit;
         }
     }
-    for (const auto& joint : written.joints)
-        if (std::find(group.members.begin(), group.members.end(), joint.axis) == group.members.end())
-            reader.problem_in(here + ".joints." + joint.axis, "config.group_joint",
-                              "'" + joint.axis + "' is no member of group " + group.name, "name a member, or add the axis to `members`");
     auto made = axes::Kinematics::make(description);
     if (!made.ok()) {
-        reader.problem_in(here, made.error().code, made.error().what, made.error().remedy);
+        // Where it names a length, there.
+        const auto& why = made.error();
+        const auto kind = kind_of(description.arm);
+        const std::string arm = here + "." + (kind == "six_joints" ? "wrist" : std::string{kind});
+        reader.problem_in(arm + "." + why.what.substr(0, why.what.find(' ')), why.code, "`" + arm + "`: " + why.what, why.remedy);
         return group;
     }
     group.kinematics = std::make_shared<const axes::Kinematics>(made.value());

@@ -30,10 +30,10 @@ struct GroupEntry {
     std::string tool, payload;  ///< names of those that are selected at the beginning; empty: none
 };
 
+/// Errors of the names in it: config.group_member (an axis twice), config.group_joint (of no member).
 [[nodiscard]] Table<GroupEntry> group_table();
 
-/// The group as the machine has it. `units`: of the axes, by name. Errors with their place: config.group_unit, config.group_joint, config.group_arm, and
-/// those of Kinematics::make; of equip().
+/// The group as the machine has it. `units`: of the axes, by name. Errors with their place: config.group_unit, config.group_arm, and those of Kinematics::make; of equip().
 [[nodiscard]] axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry,
                                             const std::map<std::string, std::string, std::less<>>& units);
 
