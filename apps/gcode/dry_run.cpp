@@ -86,7 +86,7 @@ private:
         job.out.place.error = why;
     }
     void look(const TaskContext& ctx, const axes::GroupView& view) {
-        if (asked_.RequestID != seen_) job.out.requests.push_back({view.path.request, view.path.line, job.out.seconds});
+        if (asked_.RequestID != seen_) job.out.requests.push_back({view.path.request, view.path.request.line, job.out.seconds});
         seen_ = asked_.RequestID;
         if (!move_.Active) return;
         const double period = to_seconds(ctx.period);

@@ -91,8 +91,8 @@ std::string word_of(const axes::PathRequest& request) {
 
 void print_outcome(const DryRunOutcome& out, const axes::AxisGroupConfig& group, const std::string& name) {
     const auto share = [&](double seconds) { return out.moving > 0 ? 100 * seconds / out.moving : 0; };
-    fmt::print("{}: {:.3f} s, {:.3f} s of them moving, {:.3f} of path, at most {:.3f}/s\n", name, out.seconds, out.moving, out.length,
-               out.fastest);
+    fmt::print("{}: {:.3f} s, {:.3f} s of them moving, {:.3f} {} of path, at most {:.3f} {}/s\n", name, out.seconds, out.moving, out.length,
+               group.unit, out.fastest, group.unit);
     for (std::size_t i = 0; i < group.members.size(); ++i)
         if (out.at_limit[i] > 0) fmt::print("  {:5.1f} %  of the motion axis {} is at a limit\n", share(out.at_limit[i]), group.members[i]);
     for (const auto& asked : out.requests) fmt::print("  {:9.3f} s  line {:<6} {}\n", asked.seconds, asked.line, word_of(asked.request));
@@ -111,8 +111,8 @@ int write_points(const std::string& path, const DryRunOutcome& out) {
 int tell(const RunWords& words, const DryRunOutcome& out, const axes::AxisGroupConfig& group) {
     const auto name = shown_name(words.program.file);
     if (words.json) {
-        nlohmann::ordered_json json{
-            {"done", out.done}, {"seconds", out.seconds}, {"moving", out.moving}, {"length", out.length}, {"fastest", out.fastest}};
+        nlohmann::ordered_json json{{"done", out.done},     {"seconds", out.seconds}, {"moving", out.moving},
+                                    {"length", out.length}, {"fastest", out.fastest}, {"unit", group.unit}};
         for (std::size_t i = 0; i < group.members.size(); ++i) json["at_limit"][group.members[i]] = out.at_limit[i];
         const auto* row = axes::find_error(out.place.error);
         if (!out.done) json["error"] = {{"code", row != nullptr ? std::string(row->name) : ""}, {"line", out.place.line}};
@@ -132,6 +132,10 @@ int tell(const RunWords& words, const DryRunOutcome& out, const axes::AxisGroupC
 }
 
 int run(const RunWords& words) {
+    if (words.program.rotary)
+        return fail({"usage.rotary", "--rotary", "on a machine a stored path moves X, Y and Z: the tool stays turned as it is",
+                     "leave it out; `gcode check` and `gcode plot` take it"},
+                    exit_usage);
     auto how = interpreter_options(words.program);
     if (!how) return fail(how.error(), exit_usage);
     auto loaded = load_without_programs(words.machine, true);

@@ -5,6 +5,15 @@
 #include "axes/group/path_shelf.hpp"
 
 namespace taktwerk::axes {
+namespace {
+
+void ask(PathView& shown, const PathNote& note) noexcept {
+    shown.request = note.request;
+    shown.request.line = note.line;
+    ++shown.request_id;
+}
+
+}  // namespace
 
 void AxisGroup::walk_path(Duration period) noexcept {
     PathView& shown = view_.path;
@@ -39,10 +48,7 @@ bool AxisGroup::serve(const PathNote& note, Duration period) noexcept {
         shown.number = note.number;
     }
     switch (note.kind) {
-        case PathNote::Kind::tell:
-            shown.request = note.request;
-            ++shown.request_id;
-            return true;
+        case PathNote::Kind::tell: ask(shown, note); return true;
         case PathNote::Kind::dwell:
             path_.dwelt += period;
             if (to_seconds(path_.dwelt) < note.seconds) return false;
@@ -54,8 +60,7 @@ bool AxisGroup::serve(const PathNote& note, Duration period) noexcept {
                 return true;
             }
             if (!shown.waits) {
-                shown.request = note.request;
-                ++shown.request_id;
+                ask(shown, note);
                 shown.waits = true;
             }
             return false;

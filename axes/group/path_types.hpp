@@ -47,6 +47,7 @@ struct PathRequest {
     std::uint32_t number = 0;  ///< of a tool, of an M word
     double value = 0;          ///< spindle: 1/min; mcPathUser: P, not a number where it has none
     double second = 0;         ///< mcPathUser: Q, likewise
+    std::uint32_t line = 0;    ///< of the text, that asks for it
 };
 
 /// Where in the text, and why.

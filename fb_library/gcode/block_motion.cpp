@@ -60,7 +60,7 @@ bool BlockRun::non_modal() noexcept {
 bool BlockRun::set_system() noexcept {
     const auto column = code_column(Group::non_modal);
     if (!has('L')) return fail_missing(column, "L2 or L20");
-    if (!has('P')) return fail_missing(column, "P, the coordinate system,");
+    if (!has('P')) return fail_missing(column, "P, the number of the coordinate system");
     if (axis_words() == 0) return fail_missing(column, "an axis word");
     double kind = 0;
     std::uint32_t system = 0;
@@ -191,7 +191,7 @@ bool BlockRun::centre_of(PlanePoint& centre) noexcept {
         const char letter = offset_letters[axes[i]];
         const bool absolute = state_.arc_distance == Distance::absolute;
         if (!has(letter)) {
-            if (absolute) return fail_missing(motion_column_, "both words of the centre, because G90.1 is in force,");
+            if (absolute) return fail_missing(motion_column_, "a word of the centre: under G90.1 both are needed");
             offset[i] = program_.position_[axes[i]];
             continue;
         }

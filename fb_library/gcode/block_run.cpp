@@ -210,7 +210,7 @@ bool BlockRun::user_word() noexcept {
 bool BlockRun::dwell() noexcept {
     if (g(Group::non_modal) != 40) return true;
     const auto column = code_column(Group::non_modal);
-    if (!has('P')) return fail_missing(column, "P, in seconds,");
+    if (!has('P')) return fail_missing(column, "P, the time in seconds");
     double seconds = 0;
     if (!take('P', seconds)) return false;
     if (seconds < 0) return fail(FaultKind::negative, block_.column_of('P'));

@@ -151,6 +151,19 @@ TEST_F(GcodeCommand, APipeIsAProgramToo) {
     EXPECT_THAT(plot.text(), HasSubstr("can be read once only"));
 }
 
+TEST_F(GcodeCommand, RunSaysUnitsAndWhoAsks) {
+    const std::string machine = TAKTWERK_SOURCE_DIR "/config/machines/engraver.yaml";
+    Child run({taktwerk, "gcode", "run", machine, file("run.ngc", "G53 G0 X10\nT1\nM6\nM2\n")});
+    EXPECT_EQ(run.wait(60s), exit_ok) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("10.000 mm of path, at most "));
+    EXPECT_THAT(run.text(), HasSubstr(" mm/s\n"));
+    EXPECT_THAT(run.text(), HasSubstr("line 2      T1"));
+    EXPECT_THAT(run.text(), HasSubstr("line 3      M6, tool 1"));
+    Child rotary({taktwerk, "gcode", "run", machine, file("rotary.ngc", "G0 A5\nM2\n"), "--rotary"});
+    EXPECT_EQ(rotary.wait(60s), exit_usage);
+    EXPECT_THAT(rotary.text(), HasSubstr("--rotary: on a machine a stored path moves X, Y and Z"));
+}
+
 TEST_F(GcodeCommand, NothingOfAFileReachesTheTerminalAsItIs) {
     Child check({taktwerk, "gcode", "check", file("esc.ngc", "(MSG, \x1b[31mred\x1b[0m)\nG0 X1\nM2\n")});
     EXPECT_EQ(check.wait(20s), exit_ok);

@@ -160,6 +160,16 @@ TEST(GcodeOrder, InABlockIsFixed) {
     EXPECT_EQ(dwell.items[0].seconds, 0.5);
 }
 
+// A person reads it.
+TEST(GcodeMachine, WhatIsMissingIsSaidInWords) {
+    const auto said = [](std::string_view text) { return fault_error(read_blocks(std::string(text)).fault, "part.ngc").text(); };
+    EXPECT_THAT(said("G4 X1"), testing::HasSubstr("part.ngc:1:1: G4 lacks P, the time in seconds"));
+    EXPECT_THAT(said("G10 L2 X1"), testing::HasSubstr("G10 lacks P, the number of the coordinate system"));
+    EXPECT_THAT(said("G0 X20 Y5\nG90.1 G3 X10 Y15 I10 F1"),
+                testing::HasSubstr("G3 lacks a word of the centre: under G90.1 both are needed"));
+    for (const auto& row : fault_words()) EXPECT_EQ(std::string(row.what).find(",,"), std::string::npos) << row.code;
+}
+
 TEST(GcodeMachine, SpindleToolAndDwell) {
     EXPECT_EQ(fault_of("M3"), "1:1 gcode.no_speed");
     EXPECT_EQ(fault_of("M6"), "1:1 gcode.no_tool");

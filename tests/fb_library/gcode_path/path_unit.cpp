@@ -172,6 +172,19 @@ TEST(GcodePath, WordsAreAskedForAtTheirPlace) {
     EXPECT_LE(stands, 520);
 }
 
+// What is asked for before anything is gone has its line, too.
+TEST(GcodePath, ARequestSaysWhichLineAsksForIt) {
+    PathRig rig("G21 G90\n\nT3\nM6\nG1 X10 F3000\nM2\n");
+    std::vector<std::pair<MC_PATH_REQUEST, std::uint32_t>> asked;
+    rig.extra = [&](const MotionContext& ctx) {
+        const auto& request = ctx.groups->view(rig.plc.group)->path.request;
+        if (request.kind != mcPathNothing && (asked.empty() || asked.back().first != request.kind))
+            asked.emplace_back(request.kind, request.line);
+    };
+    ASSERT_TRUE(rig.run(5000));
+    EXPECT_EQ(asked, (std::vector<std::pair<MC_PATH_REQUEST, std::uint32_t>>{{mcPathToolPrepare, 3}, {mcPathToolChange, 4}}));
+}
+
 // A wrong program is refused as a whole, with line and column: nothing moves.
 TEST(GcodePath, AFaultyTextIsRefusedBeforeAnythingMoves) {
     PathRig rig("G21 G90\nG1 X10 F3000\nG1 X20 Y1,5\nM2\n");
