@@ -93,7 +93,7 @@ TEST(GroupTrackingProperty, ABeltWithItsMoodsAndStraightAxes) {
     std::size_t compared = 0;
     for (int seed = 1; seed <= walks(); ++seed) {
         SCOPED_TRACE(seed);
-        TrackRig rig(3, cartesian_arm());
+        TrackRig rig(3, cartesian_arm(), belt_axis({.velocity = 100, .acceleration = 250, .deceleration = 250, .jerk = 1000}));
         Walk walk(rig, static_cast<std::uint32_t>(seed), 45, {20, -10, 0, 0, 0, 0.7}, -0.7);
         for (int i = 0; i < 6000; ++i) {
             walk.deed();
