@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <variant>
 
 #include "axes/group/axis_groups.hpp"
 #include "runtime/tasks/program_requests.hpp"
@@ -24,7 +25,10 @@ public:
         return answer;
     }
     axes::ErrorId set(axes::GroupRef group, const axes::GroupSetting& setting, axes::Owner owner) noexcept override {
-        return groups_.set(group, setting, owner);
+        const auto error = groups_.set(group, setting, owner);
+        const auto* follow = std::get_if<axes::FollowPath>(&setting);  // who couples an axis moves it
+        if (error == axes::ErrorId::none && follow != nullptr) claims_[follow->slave.index].motion = program_;
+        return error;
     }
     axes::ErrorId reset(axes::GroupRef group, axes::Owner owner) noexcept override { return groups_.reset(group, owner); }
     void release_stop(axes::GroupRef group, axes::CommandId id, axes::Owner owner) noexcept override {
