@@ -76,6 +76,8 @@ constexpr auto by_hand = all_of(std::array{C{"jog_lease_expired", here}, C{"soft
                                 stopped);
 constexpr auto homed = all_of(by_hand, std::array{C{"homing_failed", here}, C{"homing_timeout", here}, C{"drive_homing_failed", here},
                                                   C{"drive_homing_timeout", here}, C{"drive_homing_refused", here}});
+/// Power is asked for while the motor still runs out.
+constexpr std::array coasting{C{"motor_turns", here}};
 constexpr std::array ends{C{"stopped_by_signal"}, C{"bus_not_operational"}, C{"program_alarm_"}, C{"stopped_by_machine"}};
 constexpr std::array comes_up{C{"program_alarm_"}};
 
@@ -130,7 +132,7 @@ std::span<const Consequence> consequences(Deed deed) noexcept {
         case jog:
         case move: return by_hand;
         case home: return homed;
-        case power_on: return {};
+        case power_on: return coasting;
         case power_off:
         case stop:
         case reset:

@@ -51,6 +51,16 @@ double away_from_ends(Rig& rig, std::size_t i) {
     return view.actual_position < (ends ? (info.position_min + info.position_max) / 2 : 0) ? 1 : -1;
 }
 
+/// A drive is not switched on while its motor turns. What runs out stands in the end; what is pulled (a reel by its web) is held by hand, until its drive
+/// holds it.
+void hold_what_turns(Rig& rig, bool held) {
+    const auto& layout = rig.m.machine->layout();
+    for (std::size_t i = 0; i < layout.axes.size(); ++i)
+        if (auto* drive = rig.m.world.drive(layout.axes[i].name); drive != nullptr && is_moved_by_hand(rig, i))
+            if (!held || std::abs(rig.m.axis(i).actual_velocity) > 0.01 * layout.axes[i].velocity_limit) drive->jam(held);
+    if (held) rig.run(200ms);
+}
+
 bool all_powered(Rig& rig) {
     for (std::size_t i = 0; i < rig.m.machine->layout().axes.size(); ++i)
         if (is_moved_by_hand(rig, i) && !(rig.m.axis(i).powered && rig.m.axis(i).state == AxisState::Standstill)) return false;
@@ -136,10 +146,12 @@ bool recover(Rig& rig, Hands& hands) {
     };
     if (!rig.until(stands, 15s)) rig.problem("in manual mode something moves on: " + states(rig));
     if (!reset(rig, hands)) return false;
+    hold_what_turns(rig, true);
     if (!switched_on(rig) && !(fell_at_its_switch(rig) && reset(rig, hands) && switched_on(rig))) {
         rig.problem("not every axis gets power: " + states(rig) + rig.standing());
         return false;
     }
+    hold_what_turns(rig, false);
     if (!move_by_hand(rig)) return false;
     // What is left says nothing any more once it is acknowledged.
     // A cable that lost its link is told for a minute, and nobody can take that back (where the host slept meanwhile it has seen no more of it).
