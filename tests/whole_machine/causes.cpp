@@ -36,9 +36,10 @@ constexpr auto slaves_lost =
                                 C{"foreign_command"}});  // one that is back before it was missed is in INIT: nobody knows who put it there
 constexpr auto port_lost = all_of(slaves_lost, std::array{C{"link_down"}});
 constexpr auto counters = all_of(bus_lost, std::array{C{"working_counter_wrong"}});
-constexpr auto other_state = all_of(std::array{C{"foreign_command"}, C{"slave_left_op"}, C{"slave_emergency", here}, C{"drive_fault", here},
-                                               C{"axis_feedback_lost", here}, C{"emergency_stop"}, C{"program_waits"}},
-                                    stopped);
+constexpr auto other_state = all_of(
+    std::array{C{"foreign_command"}, C{"slave_left_op"}, C{"slave_emergency", here}, C{"drive_fault", here}, C{"axis_feedback_lost", here},
+               C{"emergency_stop"}, C{"program_waits"}, C{"gantry_skew", here}, C{"gantry_skew_warning", here}},
+    stopped);
 /// Of what is asked over the mailbox nothing is known, and nothing can be set up.
 constexpr std::array mailbox{C{"mailbox_silent", here}, C{"drive_setup_refused", here}, C{"drive_homing_refused", here}};
 constexpr std::array reference{C{"reference_clock_lost"}, C{"dc_not_locked"}, C{"dc_out_of_sync"}};
