@@ -34,9 +34,12 @@ test('the tool on the screen is where the machine has recorded it in the same cy
 test('its path is drawn: lines and half circles, from above and from the front', { timeout: 180_000 }, async () => {
     const way = cell.page.locator('[data-plane="XY"] .way');
     await until('some seconds are drawn', async () => ((await way.getAttribute('d')) ?? '').length > 1500);
-    const [box, front] = await Promise.all([way.boundingBox(), cell.page.locator('[data-plane="XZ"] .way').boundingBox()]);
-    // 40 mm wide and 160 high: the slot of the program, to one scale.
-    assert.ok(box && Math.abs(box.height / box.width - 4) < 0.2, `${box?.width} x ${box?.height}`);
+    // 40 mm wide and 160 high: the slot of the program, to one scale, once the way to it has run out of the picture.
+    await until('the slot is what is drawn', async () => {
+        const box = await way.boundingBox();
+        return box !== null && Math.abs(box.height / box.width - 4) < 0.2;
+    });
+    const front = await cell.page.locator('[data-plane="XZ"] .way').boundingBox();
     assert.ok(front && front.height < 3, 'it stays on one height');
 });
 
