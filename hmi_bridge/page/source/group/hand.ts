@@ -18,7 +18,7 @@ export function group_hand(desk: Desk, name: string) {
     const halt = desk.button('group_halt', give('group_halt'), 'stop');
     const interrupt = desk.button('group_interrupt', give('group_interrupt')), go_on = desk.button('group_continue', give('group_continue'));
     const reset = desk.button('group_reset', give('group_reset')), enable = desk.button('group_enable', give('group_enable')), disable = desk.button('group_disable', give('group_disable'));
-    let touched = 0, told = 0;
+    let touched = -Infinity, told = 0;
     const slider = element('input', { type: 'range', min: '0', max: '100', step: '1', 'aria-label': say('override'), 'data-input': 'group_override' });
     const shown = element('output', { class: 'number', 'data-value': 'group_override' });
     const tell = (): void => {
