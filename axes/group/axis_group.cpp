@@ -30,9 +30,10 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
     : config_(std::move(config)),
       paths_(paths),
       members_(axes),
-      run_(config_.kinematics, cycle, paths, config_.millimetre),
-      tracking_(axes, config_.kinematics),
-      slaves_(axes) {
+      run_(config_, cycle, paths),
+      tracking_(axes, config_.kinematics, config_.workspace),
+      slaves_(axes),
+      deviation_(config_.following) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
     view_.default_dynamics = config_.default_dynamics;
     equipment_ = config_.equipment;
@@ -151,7 +152,12 @@ void AxisGroup::plan(Instant now, Duration period) noexcept {
     }
     slaves_.step(run_.serial(), run_.along(), period);
     publish();
-    if (config_.kinematics) see_tool(view_, config_.kinematics.get(), moves_with_tool() ? run_.carried().tool : equipment_.tool_pose());
+    const auto& tool = moves_with_tool() ? run_.carried().tool : equipment_.tool_pose();
+    if (config_.kinematics) see_tool(view_, config_.kinematics.get(), tool);
+    view_.path_deviation = members_.led() ? axes::path_deviation(view_, members_, config_.kinematics.get(), tool) : 0;
+    if (!deviation_.beyond(view_.path_deviation, period)) return;
+    fail(static_cast<std::uint16_t>(ErrorId::path_following_error));
+    publish();
 }
 
 void AxisGroup::go_on_homing() noexcept {

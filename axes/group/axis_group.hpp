@@ -24,6 +24,7 @@
 #include "axes/group/group_slaves.hpp"
 #include "axes/group/group_state.hpp"
 #include "axes/group/group_tracking.hpp"
+#include "axes/group/path_deviation.hpp"
 #include "axes/group/path_run.hpp"
 
 namespace taktwerk::axes {
@@ -139,6 +140,7 @@ private:
     JointVector still_{};  // where the members were, had the frame that they follow not moved
     GroupJog jog_;         // while jogs()
     GroupHoming homing_;
+    PathDeviationWatch deviation_;
     GroupView view_;  // and its settings: override, dynamics, error, reset
     GroupEquipment equipment_;
     JointVector hold_{};  // where the members stand without a run

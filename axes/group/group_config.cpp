@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "core/nearest_name.hpp"
 
@@ -41,6 +42,16 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
                 problem("axis_twice", "axis '" + member + "' is in this or another group already", "give each axis to one group, once");
             }
         }
+        if (group.workspace && !group.kinematics)
+            problem("workspace", "it has a workspace and no arm whose tool could be in it",
+                    "write its kinematics, or leave the workspace out");
+        if (group.workspace)
+            for (const auto& room : group.workspace->rooms)
+                if (!std::all_of(room.half.begin(), room.half.end(), [](double half) { return half > 0; }))
+                    problem("workspace", "room '" + room.name + "' of its workspace has no extent",
+                            "give a radius above 0, and of each interval a lower end below the upper one");
+        if (!std::isfinite(group.following.window) || group.following.window < 0 || group.following.time < Duration{})
+            problem("following", "the window of its following error is negative or none", "give a distance above 0, or leave it out");
         for (const double value : {group.default_dynamics.velocity, group.default_dynamics.acceleration,
                                    group.default_dynamics.deceleration, group.default_dynamics.jerk})
             if (!std::isfinite(value) || value < 0) {

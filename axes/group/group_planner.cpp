@@ -33,9 +33,10 @@ void GroupPlanner::restart(const GroupOrder& order) {
     runs_ = {};
     for (auto& track : link_.tracks) track.ready.store(0, std::memory_order_release);
     next_ = 0;
-    space_ = {arm_, order.members, order.limits};
+    space_.members = order.members;
+    space_.limits = order.limits;
     end_ = {order.from, {}};
-    if (arm_ != nullptr) end_.configuration.branch = arm_->configuration(joints_of(order.from)).branch;
+    if (space_.arm != nullptr) end_.configuration.branch = space_.arm->configuration(joints_of(order.from)).branch;
 }
 
 void GroupPlanner::take(const GroupOrder& order) {

@@ -17,9 +17,9 @@ namespace taktwerk::axes {
 class GroupPlanner {
 public:
     /// `lead` [s]: how soon a plan made now can be in the cycle.
-    /// `paths`: the stored ones; nullptr: there are none. `millimetre`: in u.
-    GroupPlanner(GroupLink& link, const Kinematics* arm, double lead, const PathShelf* paths, double millimetre)
-        : link_(link), arm_(arm), lead_(lead), paths_(paths), millimetre_(millimetre) {}
+    /// `space`: arm and workspace; members and limits come with a restart. `paths`: the stored ones; nullptr: there are none. `millimetre`: in u.
+    GroupPlanner(GroupLink& link, const MoveSpace& space, double lead, const PathShelf* paths, double millimetre)
+        : link_(link), lead_(lead), space_(space), paths_(paths), millimetre_(millimetre) {}
 
     void step();
 
@@ -79,7 +79,6 @@ private:
     [[nodiscard]] Run* last() const noexcept { return next_ == 0 ? nullptr : runs_[(next_ - 1) % 2].get(); }
 
     GroupLink& link_;
-    const Kinematics* arm_;
     double lead_;
     std::uint32_t life_ = 0;
     std::uint32_t next_ = 0;  // number of the next run in this life

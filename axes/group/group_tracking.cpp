@@ -9,6 +9,7 @@
 #include "axes/group/member_limits.hpp"
 #include "axes/group/tool_motion.hpp"
 #include "axes/group/way_point.hpp"
+#include "axes/group/workspace.hpp"
 #include "axes/pose_math.hpp"
 
 namespace taktwerk::axes {
@@ -57,6 +58,8 @@ ToolMotion at_rest(const Kinematics& arm, const JointVector& members, const Pose
 
 struct GroupTracking::Inside {
     std::shared_ptr<const Kinematics> arm;
+    std::shared_ptr<const Workspace> workspace;
+    double out = 0;  // by how much the tool's point is where it may not be; only less from then on
     struct Product {
         std::uint32_t serial = 0;
         MasterTrack master;
@@ -71,9 +74,10 @@ struct GroupTracking::Inside {
     double drag = 0;                    // u of the tool's point per u of the frame's way
 };
 
-GroupTracking::GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm)
+GroupTracking::GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm, std::shared_ptr<const Workspace> workspace)
     : axes_(axes), inside_(std::make_unique<Inside>()) {
     inside_->arm = std::move(arm);
+    inside_->workspace = std::move(workspace);
 }
 GroupTracking::GroupTracking(GroupTracking&&) noexcept = default;
 GroupTracking::~GroupTracking() = default;
@@ -152,6 +156,7 @@ ErrorId GroupTracking::prepare(const FrameTrack& track, const GroupFrames& frame
     for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = at[i];
     for (std::size_t i = 0; i < most_members; ++i) states_[i] = {at[i], 0, 0};
     in.still = at_rest(*in.arm, at, Pose{});
+    in.out = -std::numeric_limits<double>::infinity();
     phase_ = Phase::prepared;
     see_room(members);
     return ErrorId::none;
@@ -276,6 +281,25 @@ void GroupTracking::follow(double period, Duration cycle) noexcept {
     phase_ = Phase::resting;
 }
 
+/// Where it is, and where it would come to rest if each member braked now.
+bool GroupTracking::in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members) noexcept {
+    auto& in = *inside_;
+    if (in.workspace == nullptr) return true;
+    Joints here{}, rest{};
+    for (std::size_t i = 0; i < in.arm->joint_count(); ++i) {
+        here[i] = rest[i] = next[i].position;
+        if (members.has(i)) rest[i] = rest_of(next[i], path_limits_of(members.axis(i)));
+    }
+    const auto room = [&](const Joints& at) {
+        const auto point = in.arm->forward(at, in.still.tool).pose.position;
+        return in.workspace->clearance(point) + wall_digits(point);
+    };
+    const double now = room(here);
+    const bool good = now >= std::min(0.0, in.out) && room(rest) >= std::min(now, 0.0);
+    in.out = std::max(in.out, std::min(now, 0.0));
+    return good;
+}
+
 ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members, Duration period) noexcept {
     auto& in = *inside_;
     if (still != nullptr) in.still = *still;
@@ -305,6 +329,7 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
                             (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
         if (!inside) return ErrorId::frame_limit;
     }
+    if (!in_workspace(next, members)) return ErrorId::frame_limit;
     states_ = next;
     for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = stand.axes[i];
     return ErrorId::none;

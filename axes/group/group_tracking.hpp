@@ -22,13 +22,14 @@ namespace taktwerk::axes {
 class Kinematics;
 struct GroupFrames;
 struct ToolMotion;
+struct Workspace;
 
 class GroupTracking {
 public:
     /// Of what a member can do, what a path in a moving frame may take; the rest is the frame's.
     static constexpr double path_share = 0.5;
 
-    GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm);
+    GroupTracking(std::span<Axis> axes, std::shared_ptr<const Kinematics> arm, std::shared_ptr<const Workspace> workspace);
     GroupTracking(GroupTracking&&) noexcept;
     ~GroupTracking();
 
@@ -78,6 +79,7 @@ private:
     void follow(double period, Duration cycle) noexcept;
     [[nodiscard]] MotionState come_nearer(const MotionState& goal, Duration cycle) noexcept;
     void see_room(const GroupMembers& members) noexcept;
+    [[nodiscard]] bool in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members) noexcept;
 
     std::span<Axis> axes_;
     std::unique_ptr<Inside> inside_;

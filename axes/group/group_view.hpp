@@ -57,6 +57,7 @@ struct GroupView {
 
     // along the path
     double path_velocity = 0, path_acceleration = 0;
+    double path_deviation = 0;  ///< u by which the tool's point is not where it should be; while it moves
     PathLimiter limiter = PathLimiter::none;
     std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
 

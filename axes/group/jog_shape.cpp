@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "axes/group/room_check.hpp"
 #include "axes/pose_math.hpp"
 
 namespace taktwerk::axes {
@@ -92,6 +93,10 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         const double closes = closes_until(time, rate, at, space);
         if (closes < time) first = space.members;
         time = closes;
+    }
+    if (const double inside = inside_until(time, from.members, rate, move.place.carried.tool, space); inside < time) {
+        first = space.members;
+        time = inside;
     }
     MoveShape shape;
     shape.end.members = at(time);
@@ -257,7 +262,14 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         return shape;
     }
     PoseWalk walk(from, space, tool, here.pose, rate);
-    const double time = walk.reach(most);
+    double time = walk.reach(most);
+    if (space.workspace != nullptr) {
+        const auto at = [&](double t) {
+            const Eigen::Vector3d p = position_of(here.pose) + t * rate.linear;
+            return std::array<double, 3>{p.x(), p.y(), p.z()};
+        };
+        time = inside_until(*space.workspace, time, at, [&](double) { return linear; });
+    }
     const double size = position_of(here.pose).norm();
     if (!(linear * time > no_way * size_of(size)) && !(angular * time > no_way)) return stands(from);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "axes/group/jog_shape.hpp"
+#include "axes/group/room_check.hpp"
 #include "axes/group/written_pose.hpp"
 #include "axes/path/arc.hpp"
 #include "axes/pose_math.hpp"
@@ -57,8 +58,16 @@ MoveShape refused(ErrorId error) {
     return shape;
 }
 
+PathSection whole(const MoveShape& shape) {
+    PathSection section;
+    section.element = shape.element;
+    section.chart = shape.chart;
+    section.length = shape.element.length();
+    return section;
+}
+
 /// The members on a straight line of their own.
-MoveShape joint_line(const MemberVector& to, const MoveEnd& from, const MoveSpace& space) {
+MoveShape joint_line(const MemberVector& to, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space) {
     MoveShape shape;
     shape.error = within(to, space);
     if (shape.error != ErrorId::none) return shape;
@@ -70,8 +79,12 @@ MoveShape joint_line(const MemberVector& to, const MoveEnd& from, const MoveSpac
     shape.end.members = to;
     if (space.arm != nullptr) shape.end.configuration = any_turns(space.arm->configuration(joints_of(to)).branch);
     shape.empty = a == b;
-    if (!shape.empty) shape.element = PathElement::line(a, b);
+    if (shape.empty) return shape;
+    shape.element = PathElement::line(a, b);
     shape.members = {from.members};
+    RunSection run;
+    run.carried = carried;
+    shape.error = refuse_room(whole(shape), run, space);
     return shape;
 }
 
@@ -122,17 +135,14 @@ void walk(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, con
 PathChart chart_at(const Pose& pose, const Kinematics& arm) noexcept { return {pose.orientation, turns(arm) ? turn_lever : 0}; }
 
 void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space, int steps) {
-    PathSection whole;
-    whole.element = shape.element;
-    whole.chart = shape.chart;
-    whole.length = shape.element.length();
+    const PathSection all = whole(shape);
     RunSection run;
     run.through_arm = true;
     run.carried = carried;
     run.configuration = from.configuration;
     MemberVector near = from.members;
     for (int i = 0; i <= steps; ++i) {
-        const WayPoint w = way_point(whole, run, whole.length * i / steps, space.arm, space.members, near);
+        const WayPoint w = way_point(all, run, all.length * i / steps, space.arm, space.members, near);
         shape.error = error_of(w.miss);
         if (shape.error == ErrorId::none && space.arm->singularity(joints_of(w.q)).measure < least_singularity)
             shape.error = ErrorId::singular_path;
@@ -142,6 +152,7 @@ void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& fro
         shape.members.push_back(near = w.q);
     }
     shape.end = {near, from.configuration};
+    shape.error = refuse_room(all, run, space);
 }
 
 MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
@@ -152,7 +163,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
         MemberVector to = move.target;
         if (is_relative(kind))
             for (std::size_t i = 0; i < space.members; ++i) to[i] += from.members[i];
-        return joint_line(to, from, space);
+        return joint_line(to, move.place.carried, from, space);
     }
     if (space.arm == nullptr) return refused(ErrorId::no_kinematics);
     const Pose& tool = move.place.carried.tool;
@@ -165,7 +176,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
     Configuration asked = direct ? wanted : from.configuration;
     const AxisSolution there = space.arm->inverse(goal, tool, asked, joints_of(from.members));
     if (!there.ok()) return refused(error_of(there.miss));
-    if (direct) return joint_line(members_of(there.axes), from, space);
+    if (direct) return joint_line(members_of(there.axes), move.place.carried, from, space);
 
     MoveShape shape;
     shape.through_arm = true;
@@ -192,6 +203,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
 }
 
 ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveEnd& near, const MoveSpace& space) {
+    if (const auto error = refuse_room(blend, at, space); error != ErrorId::none) return error;
     if (!at.through_arm) return ErrorId::none;  // between two lines inside the limits it is inside
     constexpr int steps = 16;
     for (int i = 0; i <= steps; ++i) {

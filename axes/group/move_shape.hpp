@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "axes/group/group_link.hpp"
+#include "axes/group/workspace.hpp"
 #include "core/result.hpp"
 
 namespace taktwerk::axes {
@@ -28,14 +29,15 @@ struct MoveShape {
 
 struct MoveSpace {
     const Kinematics* arm = nullptr;
+    const Workspace* workspace = nullptr;  ///< of the tool's point; nullptr: anywhere
     std::size_t members = 0;
     std::array<MemberLimits, max_path_axes> limits{};
 };
 
-/// Errors: out_of_reach, singular_path, beyond_software_limit, invalid_arc, half_turn, no_kinematics.
+/// Errors: out_of_reach, singular_path, beyond_software_limit, outside_workspace, invalid_arc, half_turn, no_kinematics.
 [[nodiscard]] MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space);
 
-/// Everywhere along its element, in so many steps: reached by the same way of the arm, inside the limits, not singular. Fills `members` and `end`, or `error`.
+/// Everywhere along its element, in so many steps: reached by the same way of the arm, inside the limits, not singular; and inside the workspace. Fills `members` and `end`, or `error`.
 void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space, int steps);
 
 /// Of a path that begins with this pose.

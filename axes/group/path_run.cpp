@@ -51,13 +51,16 @@ void cap(MemberLimits& m, const JoggingDynamics& caps, std::size_t place) noexce
 }  // namespace
 
 struct PathRun::Inside {
-    Inside(std::shared_ptr<const Kinematics> its_arm, Duration its_cycle, const PathShelf* paths, double millimetre)
+    Inside(const AxisGroupConfig& config, Duration its_cycle, const PathShelf* paths)
         : link(paths != nullptr ? sections_of_stored_paths : RunTrack::usual_sections),
-          arm(std::move(its_arm)),
-          planner(link, arm.get(), std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)), paths, millimetre) {}
+          arm(config.kinematics),
+          workspace(config.workspace),
+          planner(link, {arm.get(), workspace.get(), 0, {}}, std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)), paths,
+                  config.millimetre) {}
 
     GroupLink link;
     std::shared_ptr<const Kinematics> arm;
+    std::shared_ptr<const Workspace> workspace;
     GroupPlanner planner;
 
     // The cycle's own.
@@ -80,8 +83,8 @@ struct PathRun::Inside {
     std::uint32_t late = 0;
 };
 
-PathRun::PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle, const PathShelf* paths, double millimetre)
-    : inside_(std::make_unique<Inside>(std::move(arm), cycle, paths, millimetre)) {}
+PathRun::PathRun(const AxisGroupConfig& config, Duration cycle, const PathShelf* paths)
+    : inside_(std::make_unique<Inside>(config, cycle, paths)) {}
 PathRun::PathRun(PathRun&&) noexcept = default;
 PathRun::~PathRun() = default;
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "axes/group/group_config.hpp"
 #include "axes/group/group_equipment.hpp"
 #include "axes/group/group_members.hpp"
 #include "axes/group/group_view.hpp"
@@ -18,7 +19,6 @@
 
 namespace taktwerk::axes {
 
-class Kinematics;
 class PathShelf;
 struct PathNote;
 struct Pose;
@@ -26,8 +26,8 @@ struct ToolMotion;
 
 class PathRun {
 public:
-    /// `paths`: stored ones; nullptr: there are none. `millimetre`: in u.
-    PathRun(std::shared_ptr<const Kinematics> arm, Duration cycle, const PathShelf* paths, double millimetre);
+    /// `config`: for its arm and workspace. `paths`: stored ones; nullptr: there are none.
+    PathRun(const AxisGroupConfig& config, Duration cycle, const PathShelf* paths);
     PathRun(PathRun&&) noexcept;
     ~PathRun();
 

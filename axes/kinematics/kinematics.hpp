@@ -61,7 +61,7 @@ struct AxisDerivatives {
 
 class Kinematics {
 public:
-    /// Errors: kinematics.length (one that must be above 0, or is not a number), kinematics.geometry (six axes that are no arm),
+    /// Errors: kinematics.length (one that must be above 0, or is not a number; its subject is the length's name: "scara.second"), kinematics.geometry (six axes that are no arm),
     /// kinematics.joint (sign, unit, zero or limits), kinematics.coupling (a matrix without inverse, or that couples what is no joint),
     /// kinematics.base (an orientation whose length is not 1). Not for the cycle.
     [[nodiscard]] static Result<Kinematics> make(const KinematicsDescription& description);

@@ -19,8 +19,8 @@ struct NamedLength {
 std::optional<Error> check_lengths(std::string_view kind, std::initializer_list<NamedLength> lengths) {
     for (const NamedLength& l : lengths)
         if (!std::isfinite(l.value) || (l.above_zero && l.value <= 0))
-            return Error{"kinematics.length", std::string(kind),
-                         fmt::format("{} is {}, and must be {}", l.name, l.value, l.above_zero ? "above 0" : "a number"),
+            return Error{"kinematics.length", fmt::format("{}.{}", kind, l.name),
+                         fmt::format("{} where it must be {}", l.value, l.above_zero ? "above 0" : "a number"),
                          "Give the length as the arm's data sheet has it, in the machine's unit"};
     return std::nullopt;
 }
@@ -70,10 +70,13 @@ struct Checks {
                         check_lengths(kind, {{"a deviation's shift", d.shift[i], false}, {"a deviation's turn", d.turn[i], false}}))
                     return error;
         if (const auto* table = std::get_if<SixJoints::Table>(&six.geometry)) {
-            for (const DhRow& row : table->rows)
-                if (auto error = check_lengths(
-                        kind, {{"a", row.a, false}, {"alpha", row.alpha, false}, {"d", row.d, false}, {"theta", row.theta, false}}))
+            for (std::size_t i = 0; i < table->rows.size(); ++i) {
+                const DhRow& row = table->rows[i];
+                if (auto error =
+                        check_lengths(fmt::format("{}.rows.{}", kind, i),
+                                      {{"a", row.a, false}, {"alpha", row.alpha, false}, {"d", row.d, false}, {"theta", row.theta, false}}))
                     return error;
+            }
             return std::nullopt;
         }
         const auto& l = std::get<WristArmLengths>(six.geometry);

@@ -168,7 +168,10 @@ enum class ErrorId : std::uint16_t {
     frame_lost = 0x004F,      ///< the axis that moves the frame has no position any more, or an error
     frame_too_fast = 0x0050,  ///< the frame moves faster than the members can follow it
     frame_limit = 0x0051,     ///< following it a member would cross a limit, or the arm would be out of reach
+    // What a group watches of its tool's point.
+    outside_workspace = 0x0052,     ///< a place of the path is outside the group's workspace, or in a room that is kept free
+    path_following_error = 0x0053,  ///< the tool's point was further from where it should be than the group's window
 };
-inline constexpr std::size_t error_id_count = 0x0052;
+inline constexpr std::size_t error_id_count = 0x0054;
 
 }  // namespace taktwerk::axes

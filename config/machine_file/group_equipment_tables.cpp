@@ -12,21 +12,6 @@ namespace {
 
 using axes::SixNumbers;
 
-/// x to rz of six numbers that `six(T&)` gives.
-template <class T, class Six>
-void six_fields(std::vector<Field<T>>& into, Six six, const std::string& what) {
-    struct Number {
-        const char *key, *doc;
-    };
-    constexpr Number numbers[] = {{"x", "of "}, {"y", "of "}, {"z", "of "}, {"rx", ""}, {"ry", ""}, {"rz", ""}};
-    constexpr const char* turns[] = {"turned about the new X last", "then about the new Y", "first about Z"};
-    for (std::size_t i = 0; i < 6; ++i) {
-        const auto get = [six, i](T& object) -> double& { return six(object)[i]; };
-        into.push_back(
-            field_at<T>(numbers[i].key, get, i < 3 ? length_of_group() : angle_in_rad(), i < 3 ? numbers[i].doc + what : turns[i - 3]));
-    }
-}
-
 Table<SixNumbers> frame_table(std::string title, std::string doc) {
     Table<SixNumbers> table{"groups.<name>.frames." + std::move(title), std::move(doc), {}, {}, {}};
     six_fields<SixNumbers>(
@@ -128,7 +113,7 @@ std::vector<Field<GroupEntry>> equipment_fields() {
 void equip(Reader& reader, const Node& node, GroupEntry& entry) {
     auto& equipment = entry.group.equipment;
     if (node.find("kinematics") == nullptr)
-        for (const char* key : {"frames", "tools"})
+        for (const char* key : {"frames", "tools", "workspace"})
             if (const Node* own = node.find(key))
                 reader.problem(own->at, "config.group_frames",
                                "the group has `" + std::string(key) + "` and no arm that they could belong to",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "config/machine_file/machine_loader.hpp"
 
@@ -22,7 +23,7 @@ LoadedMachine loaded_groups() {
 
 TEST(GroupsOfAFile, TheArmStandsWhereItsAxesSay) {
     const auto machine = loaded_groups().machine;
-    ASSERT_EQ(machine.axis_groups.size(), 2u);
+    ASSERT_EQ(machine.axis_groups.size(), 5u);
     const auto& arm = machine.axis_groups[0];
     EXPECT_EQ(arm.name, "arm");
     EXPECT_EQ(arm.members, (std::vector<std::string>{"a", "b", "z", "c"}));
@@ -46,7 +47,7 @@ TEST(GroupsOfAFile, TheArmStandsWhereItsAxesSay) {
 // Lengths in the group's unit, angles in rad, masses in kg, inertias in kg m2.
 TEST(GroupsOfAFile, FramesAndToolsAreThereFromTheBeginning) {
     const auto machine = loaded_groups().machine;
-    ASSERT_EQ(machine.axis_groups.size(), 2u);
+    ASSERT_EQ(machine.axis_groups.size(), 5u);
     const auto& equipment = machine.axis_groups[0].equipment;
     const double degree = std::numbers::pi / 180;
     const auto expect = [](const axes::SixNumbers& six, const axes::SixNumbers& wanted) {
@@ -72,15 +73,65 @@ TEST(GroupsOfAFile, FramesAndToolsAreThereFromTheBeginning) {
     EXPECT_EQ(machine.axis_groups[1].equipment.selected_tool, 0);
 }
 
+// x from -300 to 300, y from 10 to 50, z without an end; a cylinder from 0 to 30 about x = 120.
+TEST(GroupsOfAFile, RoomsOfTheToolAndItsFollowingError) {
+    const auto machine = loaded_groups().machine;
+    ASSERT_EQ(machine.axis_groups.size(), 5u);
+    const auto& arm = machine.axis_groups[0];
+    ASSERT_TRUE(arm.workspace);
+    ASSERT_EQ(arm.workspace->rooms.size(), 2u);
+    EXPECT_EQ(arm.workspace->rooms[1].name, "post");
+    EXPECT_NEAR(arm.workspace->clearance({-297, 30, 1e6}), 3, 1e-9);
+    EXPECT_NEAR(arm.workspace->clearance({0, 60, 0}), -10, 1e-9);
+    EXPECT_NEAR(arm.workspace->clearance({120, 30, 15}), -15, 1e-9) << "15 from the post's ends, 30 from its side";
+    EXPECT_NEAR(arm.workspace->clearance({120, 30, 33}), 3, 1e-9);
+    EXPECT_EQ(arm.following.window, 2);
+    EXPECT_EQ(arm.following.time, std::chrono::milliseconds{20});
+    EXPECT_FALSE(machine.axis_groups[1].workspace);
+}
+
 // Axes in different units of length make one machine in the group's unit.
 TEST(GroupsOfAFile, UnitsOfAxesBecomeTheGroups) {
     const auto machine = loaded_groups().machine;
-    ASSERT_EQ(machine.axis_groups.size(), 2u);
+    ASSERT_EQ(machine.axis_groups.size(), 5u);
     const auto& portal = machine.axis_groups[1];
     ASSERT_TRUE(portal.kinematics);
     const auto at = portal.kinematics->forward({7, 7, 0, 0, 0, 0}, {});
     EXPECT_NEAR(at.pose.position[0], 70, 1e-9) << "cm";
     EXPECT_NEAR(at.pose.position[1], 7, 1e-9);
+}
+
+// Universal Robots' own table of the UR5e: at 0 it lies along -x, a2 + a3 long; d4 and d6 to -y; d1 up, d5 down. Calibration adds 1 mm along
+// the flange's z, which points to -y there.
+TEST(GroupsOfAFile, SixJointsByATable) {
+    const auto machine = loaded_groups().machine;
+    ASSERT_EQ(machine.axis_groups.size(), 5u);
+    const auto& arm = machine.axis_groups[2];
+    ASSERT_TRUE(arm.kinematics);
+    const auto at = arm.kinematics->forward({}, {});
+    ASSERT_TRUE(at.miss.ok());
+    EXPECT_NEAR(at.pose.position[0], -.425 - .3922, 1e-9) << "m";
+    EXPECT_NEAR(at.pose.position[1], -.1333 - .0996 - .001, 1e-9);
+    EXPECT_NEAR(at.pose.position[2], .1625 - .0997, 1e-9);
+    EXPECT_FALSE(arm.kinematics->closed_form()) << "calibrated";
+}
+
+// A hollow wrist: motor 5 goes with joint 4 by a fiftieth, so at 50 degrees of joint 4 motor 5 says 1 where its joint is at 0.
+TEST(GroupsOfAFile, AMotorThatGoesWithAnotherJoint) {
+    const auto machine = loaded_groups().machine;
+    ASSERT_EQ(machine.axis_groups.size(), 5u);
+    const auto& arm = machine.axis_groups[3];
+    ASSERT_TRUE(arm.kinematics);
+    const auto at = arm.kinematics->forward({0, 0, 0, 50, 1, 0}, {});
+    ASSERT_TRUE(at.miss.ok());
+    EXPECT_NEAR(at.pose.position[0], -70, 1e-9) << "straight up: joint 5 does not bend it";
+    EXPECT_NEAR(at.pose.position[1], 0, 1e-9);
+    EXPECT_NEAR(at.pose.position[2], 290 + 270 + 302 + 72, 1e-9);
+
+    // A SCARA's screw: a turn of 40 degrees lowers the motor's count by 2 mm while the lift stands.
+    const auto& scara = machine.axis_groups[4];
+    ASSERT_TRUE(scara.kinematics);
+    EXPECT_NEAR(scara.kinematics->forward({0, 0, 3, 40, 0, 0}, {}).pose.position[2], 30 + 3 + 2, 1e-9);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "axes/axis/plan_order.hpp"
 #include "axes/group/axis_groups.hpp"
+#include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
 #include "tests/axes/axis/motion_oracle.hpp"
@@ -29,6 +30,8 @@ inline AxisConfig group_axis(const std::string& name,
 }
 
 using Arm = std::shared_ptr<const Kinematics>;
+/// Rooms of a group's tool; none: it may be anywhere.
+using Rooms = std::vector<WorkspaceRoom>;
 inline Arm arm_of(const KinematicsDescription& description) {
     auto made = Kinematics::make(description);
     EXPECT_TRUE(made.ok());
@@ -42,7 +45,8 @@ struct GroupRig {
     static constexpr GroupRef ref{0};
 
     /// One group "g" of all axes; it is not enabled yet.
-    explicit GroupRig(std::vector<AxisConfig> configs, Arm kinematics = {}) : GroupRig(configs, all_of(configs, kinematics)) {}
+    explicit GroupRig(std::vector<AxisConfig> configs, Arm kinematics = {}, const Rooms& rooms = {})
+        : GroupRig(configs, all_of(configs, kinematics, rooms)) {}
     explicit GroupRig(std::size_t count, Arm kinematics = {}) : GroupRig(named(count), kinematics) {}
     GroupRig(const std::vector<AxisConfig>& configs, const std::vector<AxisGroupConfig>& grouped,
              std::vector<std::unique_ptr<PathMaker>> paths = {}) {
@@ -72,8 +76,9 @@ struct GroupRig {
         for (std::size_t i = 0; i < count; ++i) configs.push_back(group_axis("a" + std::to_string(i)));
         return configs;
     }
-    static std::vector<AxisGroupConfig> all_of(const std::vector<AxisConfig>& configs, Arm kinematics) {
+    static std::vector<AxisGroupConfig> all_of(const std::vector<AxisConfig>& configs, Arm kinematics, const Rooms& rooms = {}) {
         AxisGroupConfig group{.name = "g", .members = {}, .kinematics = kinematics};
+        if (!rooms.empty()) group.workspace = std::make_shared<const Workspace>(Workspace{rooms});
         for (const auto& config : configs) group.members.push_back(config.name);
         return {group};
     }

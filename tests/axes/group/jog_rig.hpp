@@ -25,6 +25,9 @@ struct JogRig : GroupRig {
     JogRig(std::vector<AxisConfig> configs, Arm arm, const JoggingDynamics& dynamics = slow_jogging()) : GroupRig(std::move(configs), arm) {
         ready(dynamics);
     }
+    JogRig(std::vector<AxisConfig> configs, Arm arm, const Rooms& rooms) : GroupRig(std::move(configs), arm, rooms) {
+        ready(slow_jogging());
+    }
 
     /// One cycle with this direction held; a jog begins where none is active.
     void press(const JointVector& direction) {

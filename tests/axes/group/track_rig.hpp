@@ -15,8 +15,8 @@ inline AxisConfig belt_axis(AxisLimits limits = {.velocity = 100, .acceleration 
 
 struct TrackRig : GroupRig {
     TrackRig(std::size_t members, Arm arm, AxisConfig belt = belt_axis()) : TrackRig(named(members), arm, belt) {}
-    TrackRig(std::vector<AxisConfig> members, Arm arm, AxisConfig belt = belt_axis())
-        : GroupRig(with(members, belt), all_of(members, arm)), last(members.size()) {
+    TrackRig(std::vector<AxisConfig> members, Arm arm, AxisConfig belt = belt_axis(), const Rooms& rooms = {})
+        : GroupRig(with(members, belt), all_of(members, arm, rooms)), last(members.size()) {
         enable();
     }
     static std::vector<AxisConfig> with(std::vector<AxisConfig> members, const AxisConfig& belt) {

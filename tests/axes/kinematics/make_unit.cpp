@@ -21,20 +21,20 @@ void expect_refused(const KinematicsDescription& description, const std::string&
 }
 
 TEST(MakeKinematics, RefusesLengthsThatAreNone) {
-    expect_refused({.arm = ScaraLengths{.first = .2, .second = 0}}, "kinematics.length", "scara: second is 0");
-    expect_refused({.arm = PalletizerLengths{.upper = -1, .fore = 1}}, "kinematics.length", "palletizer: upper is -1");
+    expect_refused({.arm = ScaraLengths{.first = .2, .second = 0}}, "kinematics.length", "scara.second: 0 where it must be above 0");
+    expect_refused({.arm = PalletizerLengths{.upper = -1, .fore = 1}}, "kinematics.length", "palletizer.upper: -1 where");
     expect_refused({.arm = RotaryDeltaLengths{.base_radius = .2, .platform_radius = .05, .upper = .3, .rod = std::nan("")}},
-                   "kinematics.length", "rod is nan");
+                   "kinematics.length", "rotary_delta.rod: nan where it must be above 0");
     expect_refused({.arm = LinearDeltaLengths{.base_radius = .5, .platform_radius = .1, .rod = .3}}, "kinematics.length",
                    "rod less both radii's difference");
-    expect_refused({.arm = BeamGantryShape{}}, "kinematics.length", "beam_gantry: span is 0");
-    expect_refused({.arm = SixJoints{.geometry = WristArmLengths{.c1 = 1, .c3 = 1}}}, "kinematics.length", "six_joints: c2 is 0");
+    expect_refused({.arm = BeamGantryShape{}}, "kinematics.length", "beam_gantry.span: 0 where");
+    expect_refused({.arm = SixJoints{.geometry = WristArmLengths{.c1 = 1, .c3 = 1}}}, "kinematics.length", "six_joints.c2: 0 where");
     SixJoints::Table table = ur5e_table();
     table.rows[2].alpha = std::numeric_limits<double>::infinity();
-    expect_refused({.arm = SixJoints{.geometry = table}}, "kinematics.length", "alpha is inf");
+    expect_refused({.arm = SixJoints{.geometry = table}}, "kinematics.length", "six_joints.rows.2.alpha: inf where it must be a number");
     SixJoints bent{.geometry = ur5e_table()};
     bent.deviations[3].turn[1] = std::nan("");
-    expect_refused({.arm = bent}, "kinematics.length", "a deviation's turn is nan");
+    expect_refused({.arm = bent}, "kinematics.length", "six_joints.a deviation's turn: nan where");
 }
 
 TEST(MakeKinematics, RefusesWhatIsNoArm) {

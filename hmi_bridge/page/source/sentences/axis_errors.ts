@@ -246,4 +246,10 @@ export const axis_errors: Readonly<Record<string, string>> = {
     'The moving frame led a member to a limit': '运动坐标系使某个成员轴到达极限',
     'The object has left the reach of the arm, came to a singularity or a software limit, or path and frame together ask more of a member than it has; every member brakes on its own ramp': '对象已离开机械臂的工作范围、到达奇异点或软件限位，或路径与坐标系合起来超出某个成员轴的能力；每个成员轴按自己的斜坡制动',
     'Begin earlier, end the work before the object leaves, or slow the path and the belt down': '更早开始，在对象离开之前完成工作，或降低路径和传送带的速度',
+    'The path leaves the workspace of the tool': '路径离开了工具的工作空间',
+    "A place of it is outside the rooms of the group's `workspace`, or inside one that is kept free; a tool that stands where it may not be is only led out of there": '路径上的某处位于轴组 `workspace` 的空间之外，或位于须保持空闲的空间之内；若工具已处于不允许的位置，则只能离开该处',
+    "Lead the path inside, or around the room; the group's `workspace` in the machine file says where the tool's point may be": '使路径位于空间之内或绕开该空间；机器文件中轴组的 `workspace` 规定了工具点允许的位置',
+    'The tool is too far from its path': '工具偏离路径过大',
+    "The members' following errors together put the tool's point further from its set-point than the group's `following_error` allows; the group has come to rest on its path": '各成员轴的跟随误差合起来使工具点与设定点的距离超过轴组 `following_error` 的允许值；轴组已在路径上停止',
+    'Look which member lags and why (load, brake, tuning, limits); slow the path down or widen the window': '检查哪个成员轴滞后及其原因（负载、制动器、整定、限制）；降低路径速度或放宽窗口',
 };
