@@ -358,6 +358,18 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
     {ErrorId::frame_limit, "frame_limit",
      {"The moving frame led a member to a limit", "The object has left the reach of the arm, came to a singularity or a software limit, or path and frame together ask more of a member than it has; every member brakes on its own ramp", "Begin earlier, end the work before the object leaves, or slow the path and the belt down"},
      {"运动坐标系使某个成员轴到达极限", "对象已离开机械臂的工作范围、到达奇异点或软件限位，或路径与坐标系合起来超出某个成员轴的能力；每个成员轴按自己的斜坡制动", "更早开始，在对象离开之前完成工作，或降低路径和传送带的速度"}},
+    {ErrorId::path_stands, "path_stands",
+     {"A place of the driven path can only be passed at rest", "An axis moves the group along it, on, to a stop and back at any place: a corner without a curve, a jump of its curvature, a dwell or an M word has no place in such a path; the group's path view names the line", "Round the corners (G64 P in front of them), and take dwells and M words out of the text"},
+     {"被驱动路径的某处只能在静止时通过", "由一个轴带动轴组沿路径前进、停止和返回：没有过渡曲线的拐角、曲率突变、停顿或 M 代码不能出现在这种路径中；轴组的路径视图给出行号", "用 G64 P 使拐角圆滑，并从程序中去掉停顿和 M 代码"}},
+    {ErrorId::path_not_closed, "path_not_closed",
+     {"The periodic path does not go on from its end to its beginning", "It begins where the tool's point stands; its end is elsewhere, has another direction or curvature, or a joint has turned round on the way", "Bring the tool to the path's first point, begin and end on one straight line, or choose mcNonPeriodic"},
+     {"周期路径的终点与起点不能衔接", "路径从刀具点所在位置开始；其终点在别处、方向或曲率不同，或某个关节在途中转了一圈", "先把刀具移到路径的第一个点，使起点和终点在同一条直线上，或选择 mcNonPeriodic"}},
+    {ErrorId::path_too_long, "path_too_long",
+     {"The path is too long to be driven by an axis", "It may go back at any time, so a group keeps all of it: up to 4,096 sections, a line, an arc or a curve at a corner each", "Divide the path, or write it with fewer and longer pieces"},
+     {"路径过长，不能由轴驱动", "路径随时可能返回，因此轴组保存整条路径：最多 4096 段，每段为一条直线、一段圆弧或一个拐角曲线", "把路径分成几段，或用更少更长的线段编写"}},
+    {ErrorId::path_limit, "path_limit",
+     {"The axis that drives the path led a member to a limit", "At the axis' velocity a member would have crossed its velocity, acceleration, jerk or software limit, here or in a bend ahead; the group brakes on the path, or where even that is beyond a limit every member on its own ramp", "Slow the axis down, change the ratio, or round the path's corners more; the limiter of the group's view names the member"},
+     {"驱动路径的轴使某个成员轴到达极限", "以该轴的速度，某个成员轴在此处或前方弯道会超出速度、加速度、加加速度或软件限位；轴组在路径上制动，若仍超限则每个成员轴按自己的斜坡制动", "降低该轴的速度、改变比例，或使路径的拐角更圆；轴组视图的限制项给出该成员轴"}},
 }};
 // clang-format on
 

@@ -30,7 +30,7 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
     : config_(std::move(config)),
       paths_(paths),
       members_(axes),
-      run_(config_.kinematics, cycle, paths, config_.millimetre),
+      run_(axes, config_.kinematics, cycle, paths, config_.millimetre),
       tracking_(axes, config_.kinematics),
       slaves_(axes) {
     for (std::size_t i = 0; i < members.size(); ++i) (void)members_.add(members[i], static_cast<std::uint8_t>(i + 1));
@@ -139,6 +139,7 @@ void AxisGroup::watch_reset() noexcept {
 
 void AxisGroup::plan(Instant now, Duration period) noexcept {
     tracking_.watch(equipment_.frames, now, period);
+    run_.watch(now, period);
     if (state_ == GroupState::GroupHoming && disabling_ == 0) go_on_homing();
     const bool searched = state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming;
     const bool member_stops = searched && homing_.moves(members_);
@@ -151,6 +152,10 @@ void AxisGroup::plan(Instant now, Duration period) noexcept {
     }
     slaves_.step(run_.serial(), run_.along(), period);
     publish();
+    show_tool();
+}
+
+void AxisGroup::show_tool() noexcept {
     if (config_.kinematics) see_tool(view_, config_.kinematics.get(), moves_with_tool() ? run_.carried().tool : equipment_.tool_pose());
 }
 
@@ -224,7 +229,10 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         sent_ = 0;
     }
     send_waiting();
-    if (const auto said = run_.verdict(active.id)) return said;
+    if (const auto said = run_.verdict(active.id)) {
+        if (goes_stored_path(command.kind) && said->line != 0) view_.path.place = *said;
+        return said->error;
+    }
     if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
         begun_ = sent_ >= active.id;
         if (begun_) forget_path();
@@ -232,6 +240,7 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         return std::nullopt;
     }
     begun_ = run_.begin(active.id);
+    if (begun_ && command.kind == GroupCommandKind::driven_path) view_.path = {.path = command.path, .request_id = view_.path.request_id};
     if (begun_) tracking_.engage();
     if (begun_) view_.commanded = run_.end();
     return std::nullopt;
@@ -246,7 +255,7 @@ void AxisGroup::send_waiting() noexcept {
         if (accepted.place.track != (tracking_.active() ? tracking_.track() : FrameTrack{})) return false;  // another frame: from rest
         auto place = accepted.place;
         if (place.track.moves()) place.frame = tracking_.planned_frame();
-        const bool stored = command.kind == GroupCommandKind::path || (before != nullptr && before->command.kind == GroupCommandKind::path);
+        const bool stored = goes_stored_path(command.kind) || (before != nullptr && goes_stored_path(before->command.kind));
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         const bool sent = command.kind == GroupCommandKind::jog
                               ? run_.send(accepted.id, command, place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
@@ -289,6 +298,7 @@ bool AxisGroup::begin_active() noexcept {
 /// One period of the way, or of the wait.
 void AxisGroup::go_on(Duration period) noexcept {
     run_.advance(period);
+    if (!watch_driven()) return;
     tend_jog(period);
     if (tracking_.active()) go_with_frame(period);
     if (!members_.led()) return;
@@ -301,7 +311,7 @@ void AxisGroup::go_on(Duration period) noexcept {
     if (queue_.active().command.kind == GroupCommandKind::path) return walk_path(period);
     // The set-point has gone over to the way of a later command (G-061).
     while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
-        const auto passed = run_.verdict(queue_.active().id).value_or(ErrorId::none);  // one that makes no way lies in no run
+        const auto passed = run_.verdict(queue_.active().id).value_or(PathPlace{}).error;  // one that makes no way lies in no run
         queue_.finish_active(passed == ErrorId::none ? Outcome::done : Outcome::error, passed);
         queue_.activate_next();
         for (; is_setting(queue_.active().command.kind) && queue_.waiting() > 0; queue_.activate_next()) finish_setting();
@@ -364,6 +374,7 @@ void AxisGroup::publish() noexcept {
     const bool on_way = begun_ && queue_.has_active() && goes_a_way(queue_.active().command.kind) && run_.exists();
     view_.elapsed = begun_ && queue_.has_active() ? elapsed_ : Duration{};
     view_.remaining_distance = on_way ? run_.remaining() : 0;
+    view_.corner = on_way ? run_.corner() : CornerPassed::none;
     view_.remaining = on_way ? from_seconds(run_.remaining_time()) : Duration{};
     view_.progress = on_way && run_.length() > 0 ? 1 - run_.remaining() / run_.length() : 0;
     if (begun_ && queue_.active().command.kind == GroupCommandKind::wait) {
@@ -376,6 +387,7 @@ void AxisGroup::publish() noexcept {
     view_.disabling = disabling_;
     see_selection();
     tracking_.publish(view_);
+    view_.driver = run_.driver();
     slaves_.publish(view_);
     queue_.publish(view_);
 }
