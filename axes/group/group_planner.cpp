@@ -158,7 +158,7 @@ BlendRequest GroupPlanner::blend_of(const Run& run, const GroupOrder& move, cons
     return {};
 }
 
-RunCurve::Seen GroupPlanner::corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const {
+RunCurve::Seen GroupPlanner::corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const {
     RunCurve::Seen corner;
     corner.run.through_arm = shape.through_arm;
     corner.run.carried = move.place.carried;
@@ -170,6 +170,7 @@ RunCurve::Seen GroupPlanner::corner_of(const Run& run, const GroupOrder& move, c
     corner.run.line = move.line;
     corner.run.number = move.number;
     corner.run.section.command = move.id;
+    corner.run.corner_passed = passed;
     corner.members = {end_.members};
     return corner;
 }
@@ -217,10 +218,11 @@ bool GroupPlanner::append_mixed(Run& run, const GroupOrder& move, const MoveShap
     PathSection section;
     section.element = corner->curve;
     curve.path.append_over(section, corner->before, element, corner->behind);
-    auto seen = corner_of(run, move, shape);
+    const auto passed = corner->cut ? CornerPassed::smaller : CornerPassed::as_asked;
+    auto seen = corner_of(run, move, shape, passed);
     seen.run.through_arm = false;
     curve.seen.push_back(seen);
-    curve.seen.push_back(section_of(run, move, shape, corner->cut ? CornerPassed::smaller : CornerPassed::as_asked));
+    curve.seen.push_back(section_of(run, move, shape, passed));
     run.track.last.store(move.id, std::memory_order_release);
     return true;
 }
@@ -257,11 +259,16 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
         curve.path.back_to(kept);
         return false;
     }
+    CornerPassed passed = CornerPassed::none;
+    if (asks_for_a_curve(move)) {
+        passed = blended ? CornerPassed::as_asked : move.joins ? CornerPassed::stood : CornerPassed::none;
+        if (joint.value() == PathJoint::cut) passed = CornerPassed::smaller;
+    }
     const auto& all = curve.path.sections();
     const bool with_corner = all.size() > 1 && all[all.size() - 2].blend && all[all.size() - 2].command == move.id;
     RunCurve::Seen corner;
     if (with_corner) {
-        corner = corner_of(run, move, shape);
+        corner = corner_of(run, move, shape, passed);
         if (one > 0 && other > 0) {
             if (move.command.buffer_mode == mcBlendingPrevious) corner.velocity = one;
             if (move.command.buffer_mode == mcBlendingNext) corner.velocity = other;
@@ -274,11 +281,6 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     }
     curve.seen.resize(all.size() - (with_corner ? 2 : 1));
     if (with_corner) curve.seen.push_back(corner);
-    CornerPassed passed = CornerPassed::none;
-    if (asks_for_a_curve(move)) {
-        passed = blended ? CornerPassed::as_asked : move.joins ? CornerPassed::stood : CornerPassed::none;
-        if (joint.value() == PathJoint::cut) passed = CornerPassed::smaller;
-    }
     curve.seen.push_back(section_of(run, move, shape, passed));
     run.track.last.store(move.id, std::memory_order_release);
     return true;

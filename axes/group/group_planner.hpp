@@ -71,7 +71,7 @@ private:
     [[nodiscard]] MixedRequest mixed_request_of(const Run& run, const GroupOrder& move) const;
     [[nodiscard]] bool has_room(const Run& run) const noexcept;
     /// The last two sections of the run, where a curve leads to this move; the last one.
-    [[nodiscard]] RunCurve::Seen corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
+    [[nodiscard]] RunCurve::Seen corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const;
     [[nodiscard]] RunCurve::Seen section_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const;
     [[nodiscard]] BlendRequest blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
     void feed(Run& run);
