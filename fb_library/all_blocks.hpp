@@ -111,7 +111,8 @@ using GroupBlocks =
               MC_GroupWritePayloadData, MC_GroupReadPayloadData, MC_GroupSelectPayload, MC_GroupReadPayload, MC_GroupWriteRigidBodyDynamic,
               MC_GroupReadRigidBodyDynamic, MC_GroupJog, MC_GroupJogVector, MC_GroupWriteJoggingDynamics, MC_GroupReadJoggingDynamics,
               MC_PathSelect, MC_MovePath, MC_GroupHome, MC_GroupWriteSWLimits, MC_GroupReadParameter, MC_GroupWriteParameter,
-              MC_GroupWriteReferenceDynamics, MC_GroupReadReferenceDynamics, MC_TrackConveyorBelt, MC_TrackRotaryTable, MC_SyncAxisToGroup>;
+              MC_GroupWriteReferenceDynamics, MC_GroupReadReferenceDynamics, MC_TrackConveyorBelt, MC_TrackRotaryTable, MC_SyncAxisToGroup,
+              MC_SyncGroupToAxis>;
 /// Stored paths, beside the standard's blocks.
 using PathBlocks = BlockList<Path_Handshake>;
 

@@ -30,7 +30,7 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
     : config_(std::move(config)),
       paths_(paths),
       members_(axes),
-      run_(config_, cycle, paths),
+      run_(axes, config_, cycle, paths),
       tracking_(axes, config_.kinematics, config_.workspace),
       slaves_(axes),
       deviation_(config_.following) {
@@ -140,6 +140,7 @@ void AxisGroup::watch_reset() noexcept {
 
 void AxisGroup::plan(Instant now, Duration period) noexcept {
     tracking_.watch(equipment_.frames, now, period);
+    run_.watch(now, period);
     if (state_ == GroupState::GroupHoming && disabling_ == 0) go_on_homing();
     const bool searched = state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming;
     const bool member_stops = searched && homing_.moves(members_);
@@ -152,12 +153,16 @@ void AxisGroup::plan(Instant now, Duration period) noexcept {
     }
     slaves_.step(run_.serial(), run_.along(), period);
     publish();
-    const auto& tool = moves_with_tool() ? run_.carried().tool : equipment_.tool_pose();
-    if (config_.kinematics) see_tool(view_, config_.kinematics.get(), tool);
-    view_.path_deviation = members_.led() ? axes::path_deviation(view_, members_, config_.kinematics.get(), tool) : 0;
+    show_tool();
     if (!deviation_.beyond(view_.path_deviation, period)) return;
     fail(static_cast<std::uint16_t>(ErrorId::path_following_error));
     publish();
+}
+
+void AxisGroup::show_tool() noexcept {
+    const auto& tool = moves_with_tool() ? run_.carried().tool : equipment_.tool_pose();
+    if (config_.kinematics) see_tool(view_, config_.kinematics.get(), tool);
+    view_.path_deviation = members_.led() ? axes::path_deviation(view_, members_, config_.kinematics.get(), tool) : 0;
 }
 
 void AxisGroup::go_on_homing() noexcept {
@@ -230,7 +235,10 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         sent_ = 0;
     }
     send_waiting();
-    if (const auto said = run_.verdict(active.id)) return said;
+    if (const auto said = run_.verdict(active.id)) {
+        if (goes_stored_path(command.kind) && said->line != 0) view_.path.place = *said;
+        return said->error;
+    }
     if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
         begun_ = sent_ >= active.id;
         if (begun_) forget_path();
@@ -238,6 +246,7 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         return std::nullopt;
     }
     begun_ = run_.begin(active.id);
+    if (begun_ && command.kind == GroupCommandKind::driven_path) view_.path = {.path = command.path, .request_id = view_.path.request_id};
     if (begun_) tracking_.engage();
     if (begun_) view_.commanded = run_.end();
     return std::nullopt;
@@ -252,7 +261,7 @@ void AxisGroup::send_waiting() noexcept {
         if (accepted.place.track != (tracking_.active() ? tracking_.track() : FrameTrack{})) return false;  // another frame: from rest
         auto place = accepted.place;
         if (place.track.moves()) place.frame = tracking_.planned_frame();
-        const bool stored = command.kind == GroupCommandKind::path || (before != nullptr && before->command.kind == GroupCommandKind::path);
+        const bool stored = goes_stored_path(command.kind) || (before != nullptr && goes_stored_path(before->command.kind));
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         const bool sent = command.kind == GroupCommandKind::jog
                               ? run_.send(accepted.id, command, place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
@@ -295,6 +304,7 @@ bool AxisGroup::begin_active() noexcept {
 /// One period of the way, or of the wait.
 void AxisGroup::go_on(Duration period) noexcept {
     run_.advance(period);
+    if (!watch_driven()) return;
     tend_jog(period);
     if (tracking_.active()) go_with_frame(period);
     if (!members_.led()) return;
@@ -307,7 +317,7 @@ void AxisGroup::go_on(Duration period) noexcept {
     if (queue_.active().command.kind == GroupCommandKind::path) return walk_path(period);
     // The set-point has gone over to the way of a later command (G-061).
     while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
-        const auto passed = run_.verdict(queue_.active().id).value_or(ErrorId::none);  // one that makes no way lies in no run
+        const auto passed = run_.verdict(queue_.active().id).value_or(PathPlace{}).error;  // one that makes no way lies in no run
         queue_.finish_active(passed == ErrorId::none ? Outcome::done : Outcome::error, passed);
         queue_.activate_next();
         for (; is_setting(queue_.active().command.kind) && queue_.waiting() > 0; queue_.activate_next()) finish_setting();
@@ -370,6 +380,7 @@ void AxisGroup::publish() noexcept {
     const bool on_way = begun_ && queue_.has_active() && goes_a_way(queue_.active().command.kind) && run_.exists();
     view_.elapsed = begun_ && queue_.has_active() ? elapsed_ : Duration{};
     view_.remaining_distance = on_way ? run_.remaining() : 0;
+    view_.corner = on_way ? run_.corner() : CornerPassed::none;
     view_.remaining = on_way ? from_seconds(run_.remaining_time()) : Duration{};
     view_.progress = on_way && run_.length() > 0 ? 1 - run_.remaining() / run_.length() : 0;
     if (begun_ && queue_.active().command.kind == GroupCommandKind::wait) {
@@ -382,6 +393,7 @@ void AxisGroup::publish() noexcept {
     view_.disabling = disabling_;
     see_selection();
     tracking_.publish(view_);
+    view_.driver = run_.driver();
     slaves_.publish(view_);
     queue_.publish(view_);
 }

@@ -84,6 +84,7 @@ private:
     [[nodiscard]] ErrorId refuse_state(const GroupCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_way(const GroupCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_stored(const GroupCommand& command) const noexcept;
+    [[nodiscard]] ErrorId refuse_driven(const GroupCommand& command) const noexcept;
     Submitted take_motion(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_stop(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_interrupt(const GroupCommand& command) noexcept;
@@ -121,6 +122,11 @@ private:
     void go_on(Duration period) noexcept;
     void walk_path(Duration period) noexcept;
     [[nodiscard]] bool serve(const PathNote& note, Duration period) noexcept;
+    // Of a path that an axis drives.
+    [[nodiscard]] bool driven_by(AxisRef axis) const noexcept;
+    [[nodiscard]] bool is_driven() const noexcept;
+    /// False: the members do not follow it any more.
+    [[nodiscard]] bool watch_driven() noexcept;
     void forget_path() noexcept;
     void see_selection() noexcept;
     void watch_reset() noexcept;
@@ -129,6 +135,8 @@ private:
     /// A command is gone with what it took; else what is selected counts.
     [[nodiscard]] bool moves_with_tool() const noexcept { return (members_.led() || interrupted_) && run_.exists() && run_.command() != 0; }
     void publish() noexcept;
+    /// Through the arm: once a cycle, and where coordinates have changed.
+    void show_tool() noexcept;
 
     AxisGroupConfig config_;
     const PathShelf* paths_;

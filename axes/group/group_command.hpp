@@ -9,6 +9,7 @@
 #include "axes/group/equipment_settings.hpp"
 #include "axes/group/frame_track.hpp"
 #include "axes/group/group_types.hpp"
+#include "axes/group/path_driver.hpp"
 #include "axes/group/path_types.hpp"
 #include "core/time.hpp"
 
@@ -23,7 +24,8 @@ enum class GroupCommandKind : std::uint8_t {
     circular_relative,
     direct_absolute,  ///< the axes on a straight line of their own, whatever the frame of the target
     direct_relative,
-    path,  ///< a stored path, as it was prepared
+    path,         ///< a stored path, as it was prepared
+    driven_path,  ///< the same, as fast as an axis goes (driver); it has no end of its own
     jog,   ///< target = direction by slot; goes on while it is held (HoldJog), never waits
     wait,  ///< duration
     halt,
@@ -53,6 +55,9 @@ enum class GroupCommandKind : std::uint8_t {
 [[nodiscard]] constexpr bool is_relative(GroupCommandKind kind) noexcept {
     return kind == GroupCommandKind::linear_relative || kind == GroupCommandKind::jog || kind == GroupCommandKind::circular_relative ||
            kind == GroupCommandKind::direct_relative || kind == GroupCommandKind::set_position_relative;
+}
+[[nodiscard]] constexpr bool goes_stored_path(GroupCommandKind kind) noexcept {
+    return kind == GroupCommandKind::path || kind == GroupCommandKind::driven_path;
 }
 [[nodiscard]] constexpr bool is_circular(GroupCommandKind kind) noexcept {
     return kind == GroupCommandKind::circular_absolute || kind == GroupCommandKind::circular_relative;
@@ -102,8 +107,9 @@ struct GroupCommand {
     std::uint8_t number = 0;                     ///< of the tool
     Tool tool{};
     FrameTrack track{};              ///< of track_frame; its reference and number are the group's
-    PathRef path{};                  ///< GroupCommandKind::path
+    PathRef path{};                  ///< path, driven_path
     std::uint32_t ticket = 0;        ///< of its selection
+    PathDriver driver{};             ///< of driven_path
     const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
     friend bool operator==(const GroupCommand&, const GroupCommand&) = default;
 };

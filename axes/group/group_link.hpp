@@ -11,6 +11,7 @@
 
 #include "axes/group/group_command.hpp"
 #include "axes/group/member_limits.hpp"
+#include "axes/group/path_drive.hpp"
 #include "axes/group/path_note.hpp"
 #include "axes/group/way_point.hpp"
 #include "axes/path_time/stretch_exchange.hpp"
@@ -59,6 +60,7 @@ struct GroupVerdict {
     ErrorId error = ErrorId::none;  ///< none: there is nothing to go
     bool standing = false;          ///< the run that it is on has come to rest for good
     std::uint32_t run = 0;          ///< of a standing one: which run that is, from 1
+    std::uint32_t line = 0;         ///< of a stored path: where in its text; 0: nowhere
 };
 
 struct RunTrack {
@@ -70,6 +72,7 @@ struct RunTrack {
     const std::unique_ptr<RunSection[]> sections;  ///< by part modulo most_sections
     StretchExchange exchange;
     double begin = 0;
+    DrivenPath drive{};  ///< an axis moves along it, and no stretch is offered; written before `ready`
     std::atomic<std::uint64_t> ready{0};  ///< life << 32 | number of the run, from 1: a stretch is offered
     std::atomic<std::uint32_t> first{0};  ///< the first command on it
     std::atomic<std::uint32_t> last{0};   ///< the last one so far

@@ -84,7 +84,7 @@ void AxisGroup::forget_path() noexcept {
 }
 
 void AxisGroup::selected(PathRef path) noexcept {
-    const bool on_path = queue_.active().command.kind == GroupCommandKind::path;
+    const bool on_path = goes_stored_path(queue_.active().command.kind);
     if (!on_path) view_.path = {.path = path, .request_id = view_.path.request_id};
 }
 
@@ -94,8 +94,47 @@ void AxisGroup::see_selection() noexcept {
     if (state != nullptr && state->kind == PathState::Kind::refused) view_.path.place = state->place;
 }
 
+/// It begins in its turn, and has no end: nothing waits behind it.
+bool AxisGroup::is_driven() const noexcept {
+    if (queue_.active().command.kind == GroupCommandKind::driven_path) return true;
+    const auto waiting = queue_.waiting();
+    return waiting > 0 && queue_.waiting_at(waiting - 1).command.kind == GroupCommandKind::driven_path;
+}
+
+bool AxisGroup::driven_by(AxisRef axis) const noexcept {
+    const auto is = [&](const AcceptedGroupCommand& c) {
+        return c.command.kind == GroupCommandKind::driven_path && c.command.driver.master == axis;
+    };
+    if (queue_.has_active() && is(queue_.active())) return true;
+    for (std::size_t i = 0; i < queue_.waiting(); ++i)
+        if (is(queue_.waiting_at(i))) return true;
+    return false;
+}
+
+ErrorId AxisGroup::refuse_driven(const GroupCommand& command) const noexcept {
+    if (command.buffer_mode > mcBuffered) return ErrorId::buffer_mode_not_supported;
+    if (const auto error = run_.refuse_driver(command.driver, members_); error != ErrorId::none) return error;
+    for (const auto& slave : view_.slaves)  // it would follow its own way
+        if (slave.id != 0 && slave.axis == command.driver.master) return ErrorId::coupling_loop;
+    return refuse_stored(command);
+}
+
+bool AxisGroup::watch_driven() noexcept {
+    if (run_.driver().axis.valid()) {
+        view_.path.line = run_.line();
+        view_.path.number = run_.number();
+    }
+    if (run_.lets_go() == ErrorId::none && run_.fault() != ErrorId::path_limit) return true;
+    const auto why = run_.lets_go() != ErrorId::none ? run_.lets_go() : run_.fault();
+    const bool on_path = run_.fault() == ErrorId::none;
+    fail(static_cast<std::uint16_t>(why));
+    if (on_path) return true;
+    leave(GroupEvent::error);  // each brakes on its own ramp
+    return false;
+}
+
 bool AxisGroup::uses(PathRef path) const noexcept {
-    const auto is = [&](const AcceptedGroupCommand& c) { return c.command.kind == GroupCommandKind::path && c.command.path == path; };
+    const auto is = [&](const AcceptedGroupCommand& c) { return goes_stored_path(c.command.kind) && c.command.path == path; };
     if (queue_.has_active() && is(queue_.active())) return true;
     for (std::size_t i = 0; i < queue_.waiting(); ++i)
         if (is(queue_.waiting_at(i))) return true;

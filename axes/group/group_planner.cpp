@@ -16,6 +16,10 @@ PathFeed feed_of(const PathDynamics& d) noexcept {
 /// Pieces of nearly one length would leave straight parts of a millionth between their curves, around which time is planned in cells of that size.
 constexpr double share_of_short_pieces = 0.45;
 
+bool asks_for_a_curve(const GroupOrder& move) noexcept {
+    return move.command.transition != mcTMNone && move.command.transition_parameter > 0;
+}
+
 /// Braking from v, limited in jerk.
 double stopping_way(double v, double a, double j) noexcept {
     return v * j >= a * a ? v * v / (2 * a) + v * a / (2 * j) : v * std::sqrt(v / j);
@@ -59,8 +63,8 @@ void GroupPlanner::step() {
     GroupOrder order;
     while (link_.orders.try_pop(order)) take(order);
     place_moves();
-    if (next_ > 1) feed(*runs_[next_ % 2]);
-    if (next_ > 0) feed(*runs_[(next_ - 1) % 2]);
+    for (const auto& run : {runs_[next_ % 2].get(), last()})
+        if (run != nullptr && next_ > 0) feed(*run);
 }
 
 void GroupPlanner::place_moves() {
@@ -68,6 +72,11 @@ void GroupPlanner::place_moves() {
         const GroupOrder& move = moves_.front();
         if (move.command.kind == GroupCommandKind::path) {
             if (!walk(move)) return;
+            moves_.pop_front();
+            continue;
+        }
+        if (move.command.kind == GroupCommandKind::driven_path) {
+            if (!lay(move)) return;
             moves_.pop_front();
             continue;
         }
@@ -86,19 +95,32 @@ bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
     const auto fits = [&](const RunSection& before) {
         return before.through_arm == shape.through_arm && (!shape.through_arm || before.carried.tool == move.place.carried.tool);
     };
-    const bool joins = run != nullptr && run->open && move.joins && fits(run->curve.seen.back().run);
-    if (joins) {
-        const std::uint32_t behind = run->curve.forgotten + static_cast<std::uint32_t>(run->curve.seen.size());
-        if (behind + 2 - run->track.part.load(std::memory_order_relaxed) >= run->track.most_sections) return false;
-        if (append(*run, move, shape, true)) return true;
+    if (run != nullptr && run->open && move.joins) {
+        const RunSection& before = run->curve.seen.back().run;
+        const bool mixed = before.through_arm != shape.through_arm;
+        if (mixed || fits(before)) {
+            if (!has_room(*run)) return false;
+            if (mixed ? append_mixed(*run, move, shape) : append(*run, move, shape, true)) return true;
+        }
     }
     if (run != nullptr) run->open = false;
+    Run* made = claim(move);
+    return made != nullptr && append(*made, move, shape, false);
+}
+
+bool GroupPlanner::has_room(const Run& run) const noexcept {
+    const std::uint32_t behind = run.curve.forgotten + static_cast<std::uint32_t>(run.curve.seen.size());
+    return behind + 2 - run.track.part.load(std::memory_order_relaxed) < run.track.most_sections;
+}
+
+GroupPlanner::Run* GroupPlanner::claim(const GroupOrder& move) {
     const std::uint64_t begun = link_.at_run.load(std::memory_order_acquire);
     const std::uint32_t runs_begun = begun >> 32 == life_ ? static_cast<std::uint32_t>(begun) : 0;
-    if (next_ > 1 && runs_begun < next_) return false;  // its track is still gone
+    if (next_ > 1 && runs_begun < next_) return nullptr;  // its track is still gone
     RunTrack& track = link_.tracks[next_ % 2];
     track.ready.store(0, std::memory_order_release);
     track.exchange.reset();
+    track.drive = {};
     track.part.store(0, std::memory_order_relaxed);
     track.s.store(0, std::memory_order_relaxed);
     track.velocity.store(0, std::memory_order_relaxed);
@@ -108,9 +130,10 @@ bool GroupPlanner::place(const GroupOrder& move, const MoveShape& shape) {
     made = std::make_unique<Run>(space_, track, lead_);
     made->first = move.id;
     made->rolls = move.command.kind == GroupCommandKind::jog;
-    made->pulled = move.command.kind == GroupCommandKind::path;
+    made->pulled = goes_stored_path(move.command.kind);
+    made->driven = move.command.kind == GroupCommandKind::driven_path;
     made->number = ++next_;
-    return append(*made, move, shape, false);
+    return made.get();
 }
 
 BlendRequest GroupPlanner::blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const {
@@ -136,6 +159,89 @@ BlendRequest GroupPlanner::blend_of(const Run& run, const GroupOrder& move, cons
     return {};
 }
 
+RunCurve::Seen GroupPlanner::corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const {
+    RunCurve::Seen corner;
+    corner.run.through_arm = shape.through_arm;
+    corner.run.carried = move.place.carried;
+    corner.run.configuration = end_.configuration;
+    corner.run.before = run.curve.seen.back().run.section.command;
+    corner.run.way = shape.element.length();
+    corner.run.rest = run.curve.path.sections().back().length;
+    corner.run.to = shape.end.members;
+    corner.run.line = move.line;
+    corner.run.number = move.number;
+    corner.run.section.command = move.id;
+    corner.run.corner_passed = passed;
+    corner.members = {end_.members};
+    return corner;
+}
+
+RunCurve::Seen GroupPlanner::section_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const {
+    const PathSection& section = run.curve.path.sections().back();
+    RunCurve::Seen seen;
+    seen.run.through_arm = shape.through_arm;
+    seen.run.carried = move.place.carried;
+    seen.run.configuration = end_.configuration;
+    seen.run.section.command = move.id;
+    seen.run.corner = section.begin + section.length;
+    seen.run.way = shape.element.length();
+    seen.run.to = shape.end.members;
+    seen.run.corner_passed = passed;
+    seen.run.line = move.line;
+    seen.run.number = move.number;
+    seen.members = shape.members;
+    return seen;
+}
+
+/// Its curve lies in the axes, and the lesser of both velocities holds on it, each in its own unit.
+bool GroupPlanner::append_mixed(Run& run, const GroupOrder& move, const MoveShape& shape) {
+    auto& curve = run.curve;
+    if (space_.arm == nullptr || !asks_for_a_curve(move)) return false;
+    const PathSection last = curve.path.sections().back();
+    const RunSection came = curve.seen.back().run;
+    PathMove element;
+    element.element = shape.element;
+    element.chart = shape.chart;
+    element.feed = feed_of(move.command.dynamics);
+    element.command = move.id;
+    const double half = BlendRequest{}.share;
+    CornerSide before{last, came, end_.members, std::min({half * last.element.length(), last.length, last.end() - run.final_end})};
+    CornerSide behind{{}, {}, end_.members, half * shape.element.length()};
+    behind.section.element = shape.element;
+    behind.section.chart = shape.chart;
+    behind.section.length = shape.element.length();
+    behind.run.through_arm = shape.through_arm;
+    behind.run.carried = move.place.carried;
+    behind.run.configuration = end_.configuration;
+    const Pose& tool = shape.through_arm ? move.place.carried.tool : came.carried.tool;
+    const auto corner = mixed_corner(before, behind, mixed_request_of(run, move), tool, space_);
+    if (!corner) return false;
+    PathSection section;
+    section.element = corner->curve;
+    curve.path.append_over(section, corner->before, element, corner->behind);
+    const auto passed = corner->cut ? CornerPassed::smaller : CornerPassed::as_asked;
+    auto seen = corner_of(run, move, shape, passed);
+    seen.run.through_arm = false;
+    curve.seen.push_back(seen);
+    curve.seen.push_back(section_of(run, move, shape, passed));
+    run.track.last.store(move.id, std::memory_order_release);
+    return true;
+}
+
+/// By a velocity: each side brakes in its own unit.
+MixedRequest GroupPlanner::mixed_request_of(const Run& run, const GroupOrder& move) const {
+    const double parameter = move.command.transition_parameter;
+    if (move.command.transition == mcTMCornerDistance) return {.distance = parameter};
+    if (move.command.transition == mcTMMaxCornerDeviation) return {.deviation = parameter};
+    const PathFeed came = run.curve.feed_at(run.curve.path.length());
+    PathFeed goes = came;
+    const auto said = feed_of(move.command.dynamics);
+    if (said.velocity > 0) goes.velocity = said.velocity;
+    if (said.acceleration > 0) goes.acceleration = said.acceleration;
+    return {.before = parameter * stopping_way(came.velocity, came.deceleration, came.jerk),
+            .behind = parameter * stopping_way(goes.velocity, goes.acceleration, goes.jerk)};
+}
+
 bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& shape, bool blended) {
     auto& curve = run.curve;
     PathMove element;
@@ -147,59 +253,36 @@ bool GroupPlanner::append(Run& run, const GroupOrder& move, const MoveShape& sha
     if (run.pulled) request.share = share_of_short_pieces;
     const Path::Mark kept = curve.path.mark();
     const std::size_t known = curve.seen.size();
-    const double before_velocity = known > 0 ? curve.path.sections().back().feed.velocity : 0;
+    const double one = known > 0 ? curve.path.sections().back().feed.velocity : 0, other = element.feed.velocity;
     const auto joint = curve.path.append(element, request, run.final_end);
     if (!joint.ok()) return false;
     if (joint.value() == PathJoint::stop) {  // a corner at rest ends a run: its point is stood at, exactly
         curve.path.back_to(kept);
         return false;
     }
+    CornerPassed passed = CornerPassed::none;
+    if (asks_for_a_curve(move)) {
+        passed = blended ? CornerPassed::as_asked : move.joins ? CornerPassed::stood : CornerPassed::none;
+        if (joint.value() == PathJoint::cut) passed = CornerPassed::smaller;
+    }
+    const auto& all = curve.path.sections();
+    const bool with_corner = all.size() > 1 && all[all.size() - 2].blend && all[all.size() - 2].command == move.id;
     RunCurve::Seen corner;
-    const auto fill = [&] {
-        const auto& all = curve.path.sections();
-        corner = {};
-        if (all.size() < 2 || !all[all.size() - 2].blend || all[all.size() - 2].command != move.id) return;
-        corner.run.through_arm = shape.through_arm;
-        corner.run.carried = move.place.carried;
-        corner.run.configuration = end_.configuration;
-        corner.run.before = curve.seen[known - 1].run.section.command;
-        corner.run.way = shape.element.length();
-        corner.run.rest = all.back().length;
-        corner.run.to = shape.end.members;
-        corner.run.line = move.line;
-        corner.run.number = move.number;
-        corner.run.section.command = move.id;
-        corner.members = {end_.members};
-        const double one = before_velocity;
-        const double other = element.feed.velocity;
+    if (with_corner) {
+        corner = corner_of(run, move, shape, passed);
         if (one > 0 && other > 0) {
             if (move.command.buffer_mode == mcBlendingPrevious) corner.velocity = one;
             if (move.command.buffer_mode == mcBlendingNext) corner.velocity = other;
             if (move.command.buffer_mode == mcBlendingHigh) corner.velocity = std::max(one, other);
         }
-    };
-    fill();
-    if (corner.run.section.command != 0 &&
-        refuse_blend(curve.path.sections()[curve.path.sections().size() - 2], corner.run, end_, space_) != ErrorId::none) {
-        curve.path.back_to(kept);  // the corner itself is sound: it is stood at
-        return false;
+        if (refuse_blend(all[all.size() - 2], corner.run, end_, space_) != ErrorId::none) {
+            curve.path.back_to(kept);  // the corner itself is sound: it is stood at
+            return false;
+        }
     }
-    const auto& all = curve.path.sections();
-    const bool with_corner = corner.run.section.command != 0;
     curve.seen.resize(all.size() - (with_corner ? 2 : 1));
     if (with_corner) curve.seen.push_back(corner);
-    RunCurve::Seen seen;
-    seen.run.through_arm = shape.through_arm;
-    seen.run.carried = move.place.carried;
-    seen.run.configuration = end_.configuration;
-    seen.run.section.command = move.id;
-    seen.run.corner = all.back().begin + all.back().length;
-    seen.run.way = shape.element.length();
-    seen.run.to = shape.end.members;
-    seen.run.line = move.line;
-    seen.run.number = move.number;
-    seen.members = shape.members;
-    curve.seen.push_back(seen);
+    curve.seen.push_back(section_of(run, move, shape, passed));
     run.track.last.store(move.id, std::memory_order_release);
     return true;
 }
@@ -247,6 +330,7 @@ void GroupPlanner::publish(Run& run) {
 }
 
 void GroupPlanner::feed(Run& run) {
+    if (run.driven) return;
     run.curve.forget_before(run.track.part.load(std::memory_order_relaxed));
     run.curve.wish(wish_.stands, wish_.own_ramp, wish_.factors, wish_.ramp);
     run.final_end = final_end(run);

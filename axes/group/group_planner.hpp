@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "axes/group/mixed_corner.hpp"
 #include "axes/group/move_shape.hpp"
 #include "axes/group/path_segment.hpp"
 #include "axes/group/path_shelf.hpp"
@@ -39,6 +40,7 @@ private:
         bool offered = false;      // its first stretch
         bool said_stuck = false;
         bool rolls = false;           // a jog: planned as far as it goes soon
+        bool driven = false;          // by an axis: nothing is planned
         std::uint32_t published = 0;  // parts in front of it are the track's
         double final_end = 0;
     };
@@ -55,6 +57,8 @@ private:
         double deviation = 0;
         bool resting = true;  // the next piece begins from rest
         bool full = false;    // until there is room for many
+        bool laid = false;    // of a driven path: it has a run
+        MoveEnd began;        // where it begins
     };
 
     void take(const GroupOrder& order);
@@ -62,10 +66,26 @@ private:
     void place_moves();
     [[nodiscard]] bool place(const GroupOrder& move, const MoveShape& shape);
     [[nodiscard]] bool append(Run& run, const GroupOrder& move, const MoveShape& shape, bool blended);
+    /// Behind a path of the other kind of points.
+    [[nodiscard]] bool append_mixed(Run& run, const GroupOrder& move, const MoveShape& shape);
+    [[nodiscard]] MixedRequest mixed_request_of(const Run& run, const GroupOrder& move) const;
+    [[nodiscard]] bool has_room(const Run& run) const noexcept;
+    /// The last two sections of the run, where a curve leads to this move; the last one.
+    [[nodiscard]] RunCurve::Seen corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const;
+    [[nodiscard]] RunCurve::Seen section_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const;
     [[nodiscard]] BlendRequest blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
     void feed(Run& run);
     /// True: all of it is placed.
     [[nodiscard]] bool walk(const GroupOrder& move);
+    // Of a path that an axis drives, which is laid out as a whole: path_lay.cpp. True: it is, or will not be.
+    [[nodiscard]] bool lay(const GroupOrder& move);
+    [[nodiscard]] ErrorId lay_piece(const GroupOrder& move, const MoveShape& shape);
+    bool refuse_laid(const GroupOrder& move, ErrorId error);
+    bool lay_done(const GroupOrder& move);
+    void look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const;
+    [[nodiscard]] GroupOrder piece_of(const GroupOrder& move) const;
+    /// A track for a run that begins with this move; nullptr: none is free yet.
+    [[nodiscard]] Run* claim(const GroupOrder& move);
     void open_path(const GroupOrder& move);
     /// False: not now.
     [[nodiscard]] bool place_piece(const GroupOrder& move);

@@ -65,7 +65,7 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
     if (state_ == GroupStopping) return ErrorId::state_forbids;
     if (state_ == GroupHoming) return ErrorId::state_forbids;
     if (kind == GroupCommandKind::home) return state_ == GroupStandby ? ErrorId::none : ErrorId::state_forbids;
-    if (jogs() && has_place_in_queue(kind) && waits(command)) return ErrorId::state_forbids;  // G-090
+    if ((jogs() || is_driven()) && has_place_in_queue(kind) && waits(command)) return ErrorId::state_forbids;  // G-090
     if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
     if (kind == GroupCommandKind::resume) return interrupted_ ? ErrorId::none : ErrorId::nothing_interrupted;
     return interrupting_ != 0 && !waits(command) ? ErrorId::state_forbids : ErrorId::none;
@@ -73,6 +73,7 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
 
 ErrorId AxisGroup::refuse_way(const GroupCommand& command) const noexcept {
     if (command.kind == GroupCommandKind::path) return refuse_stored(command);
+    if (command.kind == GroupCommandKind::driven_path) return refuse_driven(command);
     if (command.orientation != mcLinear) return ErrorId::not_supported;
     if (is_circular(command.kind) && (command.circle.mode > mcRADIUS || !(command.circle.tolerance >= 0)))
         return ErrorId::invalid_parameter;
@@ -153,6 +154,7 @@ Submitted AxisGroup::submit(const GroupCommand& wanted, Owner owner) noexcept {
         default: answer = take_motion(command, owner); break;
     }
     publish();
+    if (is_administrative(command.kind) && !is_setting(command.kind)) show_tool();  // who reads it in this scan sees what was set
     return answer;
 }
 
@@ -402,7 +404,9 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
     } else if (const auto* limits = std::get_if<WriteSoftwareLimits>(&setting)) {
         error = set_limits(*limits, owner);
     } else if (const auto* wanted = std::get_if<FollowPath>(&setting)) {
-        error = state_ == GroupState::GroupDisabled ? ErrorId::group_disabled : slaves_.take(*wanted, members_, owner);
+        error = state_ == GroupState::GroupDisabled ? ErrorId::group_disabled
+                : driven_by(wanted->slave)            ? ErrorId::coupling_loop
+                                                      : slaves_.take(*wanted, members_, owner);
     } else if (const auto* mode = std::get_if<SetDynamicsMode>(&setting)) {
         view_.reference_dynamics.percent = mode->percent;
     } else if (std::holds_alternative<HoldJog>(setting) || std::holds_alternative<WriteJoggingDynamics>(setting)) {

@@ -45,8 +45,8 @@ ErrorId GroupSlaves::take(const FollowPath& wanted, const GroupMembers& members,
 }
 
 void GroupSlaves::step(std::uint64_t run, const MotionState& along, Duration period) noexcept {
-    // A path that is forgotten has gone its way all the same.
-    gone_.place.local += run == run_ ? std::max(0.0, along.position - s_) : along.position;
+    // A path that is forgotten has gone its way all the same. One that an axis drives may go back.
+    gone_.place.local += run == run_ ? along.position - s_ : along.position;
     run_ = run;
     s_ = along.position;
     gone_.velocity = along.velocity;

@@ -45,6 +45,13 @@ inline constexpr std::size_t product_frames = 8;
 [[nodiscard]] constexpr std::size_t product_index(MC_CoordSystem frame) noexcept { return frame == mcPCS ? 0 : frame - mcPCS_2 + 1u; }
 /// The curve at a joint of two motions.
 enum MC_TransitionMode : std::uint8_t { mcTMNone, mcTMStartVelocity, mcTMConstantVelocity, mcTMCornerDistance, mcTMMaxCornerDeviation };
+/// What became of that curve (G-060).
+enum class CornerPassed : std::uint8_t {
+    none,      ///< none was asked for
+    as_asked,  ///< ... or none is there to be rounded
+    smaller,   ///< less room than it wants, or it came late
+    stood,     ///< none can be passed there: at rest
+};
 /// v2.0: how fast that joint is passed.
 enum MC_TransitionVelocity : std::uint8_t { mcTVZero, mcTVLow, mcTVPrevious, mcTVNext, mcTVHigh };
 /// How the tool turns on the way.

@@ -52,6 +52,7 @@ struct GroupView {
     std::array<double, 6> tool_set{}, tool_actual{}, tool_commanded{}, tool_velocity{}, tool_actual_velocity{};
 
     TrackView track{};
+    PathDriverView driver{};                      ///< of MC_SyncGroupToAxis
     std::array<PathSlave, most_slaves> slaves{};  ///< axes that follow the path's length
     double path_gone = 0;                         ///< u of all paths, one behind the other, forwards
 
@@ -68,6 +69,7 @@ struct GroupView {
     Duration elapsed{};           ///< since it became active
     Duration remaining{};         ///< as planned now; 0 where nobody can say
     double remaining_distance = 0, progress = 0;
+    CornerPassed corner = CornerPassed::none;  ///< in front of it
 
     PathView path{};
 

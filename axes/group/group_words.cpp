@@ -10,7 +10,7 @@ std::string_view name(PathLimiter limiter) noexcept {
 }
 
 std::string_view name(GroupCommandKind kind) noexcept {
-    constexpr std::array<std::string_view, 21> names{
+    constexpr std::array<std::string_view, 22> names{
         "none",
         "MC_MoveLinearAbsolute",
         "MC_MoveLinearRelative",
@@ -19,6 +19,7 @@ std::string_view name(GroupCommandKind kind) noexcept {
         "MC_MoveDirectAbsolute",
         "MC_MoveDirectRelative",
         "MC_MovePath",
+        "MC_SyncGroupToAxis",
         "MC_GroupJog",
         "MC_GroupWaitTime",
         "MC_GroupHalt",

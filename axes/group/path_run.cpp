@@ -4,19 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "axes/group/group_planner.hpp"
 #include "axes/group/member_limits.hpp"
+#include "axes/group/path_run_inside.hpp"
 #include "axes/group/tool_motion.hpp"
-#include "axes/path_time/path_player.hpp"
 
 namespace taktwerk::axes {
 namespace {
 
-/// How soon a plan can be in the cycle, s, and in cycles at least. Plans that take longer make it grow.
-constexpr double least_lead = 0.008;
-constexpr double least_lead_cycles = 4;
-/// How far a stored path is known ahead: what braking takes has to fit, also in short pieces. Some 5 MB a track.
-constexpr std::size_t sections_of_stored_paths = 4096;
 /// A part of a limit that counts as using it.
 constexpr double in_use = 0.98;
 
@@ -50,41 +44,8 @@ void cap(MemberLimits& m, const JoggingDynamics& caps, std::size_t place) noexce
 
 }  // namespace
 
-struct PathRun::Inside {
-    Inside(const AxisGroupConfig& config, Duration its_cycle, const PathShelf* paths)
-        : link(paths != nullptr ? sections_of_stored_paths : RunTrack::usual_sections),
-          arm(config.kinematics),
-          workspace(config.workspace),
-          planner(link, {arm.get(), workspace.get(), 0, {}}, std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)), paths,
-                  config.millimetre) {}
-
-    GroupLink link;
-    std::shared_ptr<const Kinematics> arm;
-    std::shared_ptr<const Workspace> workspace;
-    GroupPlanner planner;
-
-    // The cycle's own.
-    GroupOrder wish;
-    bool told = true;  // the wish
-    std::uint32_t life = 0;
-    std::uint32_t begun = 0;  // runs, in this life
-    RunTrack* track = nullptr;
-    std::optional<PathPlayer> player;
-    std::array<std::uint8_t, max_path_axes> places{};
-    std::array<MemberLimits, max_path_axes> limits{};
-    std::size_t members = 0;
-    MemberVector q{}, velocity{}, acceleration{}, before{};  // before: the acceleration of the cycle before
-    double period = 1;
-    WayPoint at;
-    PathNote note;
-    bool noted = false;
-    std::array<GroupVerdict, 32> verdicts{};
-    std::size_t next_verdict = 0;
-    std::uint32_t late = 0;
-};
-
-PathRun::PathRun(const AxisGroupConfig& config, Duration cycle, const PathShelf* paths)
-    : inside_(std::make_unique<Inside>(config, cycle, paths)) {}
+PathRun::PathRun(std::span<Axis> axes, const AxisGroupConfig& config, Duration cycle, const PathShelf* paths)
+    : inside_(std::make_unique<Inside>(axes, config, cycle, paths)) {}
 PathRun::PathRun(PathRun&&) noexcept = default;
 PathRun::~PathRun() = default;
 
@@ -160,9 +121,9 @@ bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace
     return in.link.orders.try_push(order);
 }
 
-std::optional<ErrorId> PathRun::verdict(CommandId id) noexcept {
+std::optional<PathPlace> PathRun::verdict(CommandId id) const noexcept {
     for (const auto& v : inside_->verdicts)
-        if (v.id == id && v.life == inside_->life && !v.standing) return v.error;
+        if (v.id == id && v.life == inside_->life && !v.standing) return PathPlace{.error = v.error, .line = v.line};
     return std::nullopt;
 }
 
@@ -178,6 +139,7 @@ void PathRun::stand(const PathDynamics& ramp, bool own, const Override& factors)
     auto& in = *inside_;
     if (!exists_) return;
     stops_ = true;
+    if (in.drive.on()) return in.drive.stand(ramp);
     in.wish.stands = true;
     in.wish.own_ramp = own;
     in.wish.factors = factors;
@@ -189,6 +151,7 @@ void PathRun::stand(const PathDynamics& ramp, bool own, const Override& factors)
 void PathRun::resume(const Override& factors) noexcept {
     auto& in = *inside_;
     stops_ = false;
+    if (in.drive.on()) return in.drive.go();
     in.wish.stands = false;
     in.wish.factors = factors;
     in.wish.ramp = {};
@@ -217,8 +180,11 @@ void PathRun::take_track() noexcept {
     auto& in = *inside_;
     RunTrack& next = in.link.tracks[in.begun % 2];
     if (in.player) in.late += in.player->late();
+    in.player.reset();
+    in.drive.end();
     in.track = &next;
-    in.player.emplace(next.exchange, 0.0);
+    if (next.drive.driven) begin_driven();
+    else in.player.emplace(next.exchange, 0.0);
     ++in.begun;
     in.link.at_run.store(GroupLink::both(in.life, in.begun), std::memory_order_release);
     arrived_ = false;
@@ -226,6 +192,7 @@ void PathRun::take_track() noexcept {
 
 bool PathRun::at_end_of_run() const noexcept {
     const auto& in = *inside_;
+    if (in.drive.on()) return false;
     return !in.player || (in.player->standing() && s_.position >= in.track->closed.load(std::memory_order_acquire) * (1 - 1e-12));
 }
 
@@ -254,6 +221,7 @@ void PathRun::clear() noexcept {
     auto& in = *inside_;
     if (in.player) in.late += in.player->late();
     in.player.reset();
+    in.drive.end();
     in.track = nullptr;
     in.verdicts = {};
     in.noted = false;
@@ -261,6 +229,7 @@ void PathRun::clear() noexcept {
     command_ = 0;
     line_ = number_ = 0;
     length_ = remaining_ = 0;
+    corner_ = CornerPassed::none;
     exists_ = arrived_ = stops_ = false;
     stuck_ = fault_ = ErrorId::none;
     limiter_ = PathLimiter::none;
@@ -276,6 +245,7 @@ ErrorId PathRun::stuck() const noexcept {
 bool PathRun::over() const noexcept {
     if (!exists_) return true;
     const auto& in = *inside_;
+    if (in.drive.on()) return in.drive.rests() || fault_ != ErrorId::none;
     return !in.player || (in.player->standing() && (stops_ || arrived_ || stuck() != ErrorId::none)) || fault_ != ErrorId::none;
 }
 
@@ -290,7 +260,8 @@ void PathRun::advance(Duration period) noexcept {
         }
         in.verdicts[in.next_verdict++ % in.verdicts.size()] = v;
     }
-    if (!exists_ || !in.player || fault_ != ErrorId::none) return;
+    if (!exists_ || !in.goes() || fault_ != ErrorId::none) return;
+    if (in.drive.on()) return go_driven(period);
     const PathMotion& now = in.player->step(to_seconds(period));
     s_ = {now.s, now.velocity, now.acceleration};
     in.period = to_seconds(period);
@@ -301,19 +272,20 @@ void PathRun::advance(Duration period) noexcept {
 /// Where that is for the members.
 void PathRun::look() noexcept {
     auto& in = *inside_;
-    const std::uint32_t part = in.player->part();
+    const std::uint32_t part = in.part();
     const RunSection& run = in.track->section(part);
-    const double s = s_.position;
+    const double s = in.place();
     in.track->part.store(part, std::memory_order_relaxed);
     in.track->s.store(s, std::memory_order_relaxed);
     in.track->velocity.store(s_.velocity, std::memory_order_relaxed);
     if (run.section.command == 0) return;  // it stands in front of the first stretch
     const bool before = run.section.blend && s < run.section.begin + run.section.length / 2;
     command_ = before ? run.before : run.section.command;
+    if (!before) corner_ = run.corner_passed;
     carried_ = run.carried;
     line_ = run.line;
     number_ = run.number;
-    arrived_ = in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
+    arrived_ = in.player && in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
     length_ = before ? run.section.length / 2 : run.way;
     remaining_ = before              ? run.section.begin + run.section.length / 2 - s
                  : run.section.blend ? run.section.end() - s + run.rest
@@ -363,7 +335,7 @@ bool PathRun::see_tool(ToolMotion& motion) const noexcept {
 void PathRun::see_limits() noexcept {
     auto& in = *inside_;
     limiter_ = PathLimiter::none;
-    if (in.player->standing()) return;
+    if (in.player ? in.player->standing() : s_.velocity == 0) return;
     double most = 0;
     for (std::size_t k = 0; k < in.members; ++k) {
         const auto& limits = in.limits[k];
@@ -378,7 +350,7 @@ void PathRun::see_limits() noexcept {
     else limiter_ = most >= in_use ? PathLimiter::axis : PathLimiter::command;
 }
 
-std::uint64_t PathRun::serial() const noexcept { return GroupLink::both(inside_->life, inside_->begun); }
+std::uint64_t PathRun::serial() const noexcept { return exists_ ? GroupLink::both(inside_->life, inside_->begun) : 0; }
 
 double PathRun::remaining_time() const noexcept {
     const auto& in = *inside_;

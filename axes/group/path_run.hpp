@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "axes/group/group_config.hpp"
 #include "axes/group/group_equipment.hpp"
@@ -27,7 +28,7 @@ struct ToolMotion;
 class PathRun {
 public:
     /// `config`: for its arm and workspace. `paths`: stored ones; nullptr: there are none.
-    PathRun(const AxisGroupConfig& config, Duration cycle, const PathShelf* paths);
+    PathRun(std::span<Axis> axes, const AxisGroupConfig& config, Duration cycle, const PathShelf* paths);
     PathRun(PathRun&&) noexcept;
     ~PathRun();
 
@@ -46,9 +47,18 @@ public:
     bool send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
               const JointVector* pressed = nullptr) noexcept;
     /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
-    [[nodiscard]] std::optional<ErrorId> verdict(CommandId id) noexcept;
+    [[nodiscard]] std::optional<PathPlace> verdict(CommandId id) const noexcept;
     /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
     [[nodiscard]] bool begin(CommandId id) noexcept;
+    // Of a path that an axis drives (driven_run.cpp):
+    /// PathDrive::refuse().
+    [[nodiscard]] ErrorId refuse_driver(const PathDriver& driver, const GroupMembers& members) const noexcept;
+    /// Each cycle, before advance(): where its master is.
+    void watch(Instant now, Duration period) noexcept;
+    [[nodiscard]] PathDriverView driver() const noexcept;
+    /// It has begun to come to rest by itself: master_lost, path_limit. A fault() besides: it cannot do even that on the path.
+    [[nodiscard]] ErrorId lets_go() const noexcept;
+
     // Of a stored path, which is gone in many runs:
     /// What is to be done now, before the set-point goes on; nullptr: nothing.
     [[nodiscard]] const PathNote* note() noexcept;
@@ -88,6 +98,7 @@ public:
 
     /// Whose way the set-point is on: from the middle of a blend on the later one's (G-061). 0: none.
     [[nodiscard]] CommandId command() const noexcept { return command_; }
+    /// Of a periodic path that an axis drives: laps count.
     [[nodiscard]] const MotionState& along() const noexcept { return s_; }
     /// Of the path that along() is on: no two have the same.
     [[nodiscard]] std::uint64_t serial() const noexcept;
@@ -99,6 +110,8 @@ public:
     /// Where the way of command() ends.
     [[nodiscard]] const JointVector& end() const noexcept { return end_; }
     [[nodiscard]] double length() const noexcept { return length_; }
+    /// How the joint in front of command() was passed.
+    [[nodiscard]] CornerPassed corner() const noexcept { return corner_; }
     [[nodiscard]] double remaining() const noexcept { return remaining_; }
     /// s, of the stretch that runs; 0 where it does not lead to the end.
     [[nodiscard]] double remaining_time() const noexcept;
@@ -112,6 +125,11 @@ private:
     void tell() noexcept;
     void stand(const PathDynamics& ramp, bool own, const Override& factors) noexcept;
     void take_track() noexcept;
+    void begin_driven() noexcept;
+    void go_driven(Duration period) noexcept;
+    [[nodiscard]] bool too_fast_ahead() const noexcept;
+    [[nodiscard]] bool look_driven() noexcept;
+    void find_part() noexcept;
     [[nodiscard]] bool at_end_of_run() const noexcept;
     void look() noexcept;
     void see_limits() noexcept;
@@ -128,6 +146,7 @@ private:
     bool stops_ = false;  // the goal is rest, not the end
     ErrorId stuck_ = ErrorId::none, fault_ = ErrorId::none;
     std::uint32_t stuck_run_ = 0;
+    CornerPassed corner_ = CornerPassed::none;
     PathLimiter limiter_ = PathLimiter::none;
     std::uint8_t narrowest_ = 0;
 };

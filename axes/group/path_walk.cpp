@@ -35,6 +35,7 @@ void becomes_fault(PathItem& item, ErrorId error) noexcept {
 void GroupPlanner::open_path(const GroupOrder& move) {
     walk_ = std::make_unique<Walk>();
     walk_->id = move.id;
+    walk_->began = end_;
     walk_->place.look = millimetre_;
     walk_->place.carried = move.place.carried;
     if (Run* run = last()) run->open = false;
@@ -86,19 +87,24 @@ bool GroupPlanner::walk(const GroupOrder& move) {
     return false;
 }
 
-bool GroupPlanner::place_piece(const GroupOrder& move) {
+/// The stricter of both rules holds at the joint in front of it.
+GroupOrder GroupPlanner::piece_of(const GroupOrder& move) const {
     using Joint = PathItem::Joint;
-    Walk& w = *walk_;
+    const Walk& w = *walk_;
     GroupOrder piece = move;
     piece.line = w.item.line;
     piece.number = w.item.number;
     piece.command.dynamics.velocity = w.item.velocity;
-    // The stricter of both rules holds at their joint.
     const Joint joint = std::min(w.joint, w.item.joint);
     piece.joins = !w.resting && joint != Joint::stop;
     piece.command.transition = joint == Joint::blend ? mcTMMaxCornerDeviation : mcTMNone;
     piece.command.transition_parameter = std::min({w.deviation, w.item.deviation, any_deviation});
-    if (!place(piece, *w.shape)) {
+    return piece;
+}
+
+bool GroupPlanner::place_piece(const GroupOrder& move) {
+    Walk& w = *walk_;
+    if (!place(piece_of(move), *w.shape)) {
         w.full = last() != nullptr && last()->open;
         return false;
     }

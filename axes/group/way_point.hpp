@@ -26,7 +26,11 @@ struct RunSection {
     double way = 0;                      ///< length of its command's own element
     double rest = 0;                     ///< what is left of that behind this section, where it is a blend
     MemberVector to{};                   ///< where its command ends, to the last bit
+    CornerPassed corner_passed = CornerPassed::none;  ///< in front of its command
     std::uint32_t line = 0, number = 0;  ///< of a stored path: where in its text
+    // Where an axis drives the path: u/s from which it can still be braked for what comes behind its end, in front of its beginning.
+    double fastest_at_end = 0, fastest_at_begin = 0;
+    double fastest = 0;  ///< u/s that may be had on it
 };
 
 struct WayPoint {

@@ -51,6 +51,27 @@ std::size_t Path::index_at(double s) const noexcept {
     return behind == sections_.begin() ? 0 : static_cast<std::size_t>(behind - sections_.begin()) - 1;
 }
 
+void Path::append_over(const PathSection& curve, double before, const PathMove& move, double behind) {
+    PathSection& last = sections_.back();
+    last.length -= before;
+    PathSection corner = curve;
+    corner.feed = slower(last.feed, move.feed);
+    corner.begin = last.end();
+    corner.length = curve.element.length();
+    corner.command = move.command;
+    corner.blend = true;
+    PathSection next;
+    next.element = move.element;
+    next.chart = move.chart;
+    next.feed = move.feed;
+    next.command = move.command;
+    next.from = behind;
+    next.begin = corner.end();
+    next.length = move.element.length() - behind;
+    sections_.push_back(corner);
+    sections_.push_back(next);
+}
+
 Result<PathJoint> Path::append(const PathMove& move, const BlendRequest& transition, double frozen) {
     if (!(move.element.length() > 0) || !std::isfinite(move.element.length()))
         return Error{"path.empty_move", "", "a move of no length has no direction and cannot be part of a path", "leave it out"};

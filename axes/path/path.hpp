@@ -58,6 +58,10 @@ public:
     /// Errors: path.empty_move (nothing moves), path.gap (it begins elsewhere; nothing is changed).
     [[nodiscard]] Result<PathJoint> append(const PathMove& move, const BlendRequest& transition, double frozen = 0);
 
+    /// A curve that somebody has made for a joint of two kinds of points, and the move behind it: the curve leaves the last section `before` its end, and the
+    /// move goes on `behind` its beginning.
+    void append_over(const PathSection& curve, double before, const PathMove& move, double behind);
+
     [[nodiscard]] const std::vector<PathSection>& sections() const noexcept { return sections_; }
     [[nodiscard]] double length() const noexcept { return sections_.empty() ? 0 : sections_.back().end(); }
     /// The section that holds s; at a joint the one behind it, or before it at the path's end. Only where there are sections.

@@ -9,6 +9,7 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr double arc_feature = 0.25;  // rad
+constexpr double course_parts = 12;
 
 }  // namespace
 
@@ -42,6 +43,14 @@ PathElement PathElement::quintic(const Quintic& curve) noexcept {
     return e;
 }
 
+PathElement PathElement::course(const PathPoint& from, const PathPoint& to, double length) noexcept {
+    PathElement e;
+    e.kind_ = Kind::course;
+    e.length_ = length;
+    e.quintic_ = Quintic(from, to, length);
+    return e;
+}
+
 PathElement PathElement::shifted(const PathVector& by) const noexcept {
     PathElement e = *this;
     e.start_ += by;
@@ -66,6 +75,7 @@ PathPoint PathElement::at(double s) const noexcept {
             break;
         }
         case Kind::quintic: return quintic_.at(s);
+        case Kind::course: return quintic_.by_parameter(s / length_, length_);
     }
     return p;
 }
@@ -75,6 +85,7 @@ double PathElement::feature(double s) const noexcept {
         case Kind::line: break;
         case Kind::arc: return arc_feature / rate_;
         case Kind::quintic: return quintic_.feature(s);
+        case Kind::course: return length_ / course_parts;
     }
     return std::numeric_limits<double>::infinity();
 }

@@ -1,5 +1,6 @@
 #pragma once
-// One curve of a path by its length: a straight line, an arc or helix, a quintic. A value; real-time safe once made.
+// One curve of a path by its length: a straight line, an arc or helix, a quintic; or a polynomial of a length that is not its own. A value; real-time safe
+// once made.
 
 #include <cstdint>
 
@@ -10,7 +11,7 @@ namespace taktwerk::axes {
 
 class PathElement {
 public:
-    enum class Kind : std::uint8_t { line, arc, quintic };
+    enum class Kind : std::uint8_t { line, arc, quintic, course };
 
     PathElement() = default;
     /// From a point to another, which differ.
@@ -19,6 +20,9 @@ public:
     [[nodiscard]] static PathElement arc(const PathVector& centre, const PathVector& a, const PathVector& b, const PathVector& drift,
                                          double angle) noexcept;
     [[nodiscard]] static PathElement quintic(const Quintic& curve) noexcept;
+    /// The polynomial of the fifth degree in s with these points and derivatives at s = 0 and s = `length`: |dx/ds| is what they say. For joints of paths
+    /// whose lengths are of two kinds.
+    [[nodiscard]] static PathElement course(const PathPoint& from, const PathPoint& to, double length) noexcept;
 
     /// The same curve elsewhere.
     [[nodiscard]] PathElement shifted(const PathVector& by) const noexcept;

@@ -117,6 +117,16 @@ double Quintic::parameter_at(double s) const noexcept {
     return std::clamp(u, 0.0, 1.0);
 }
 
+PathPoint Quintic::by_parameter(double u, double stretch) const noexcept {
+    const double r = 1 / stretch;
+    PathPoint p;
+    p.at = point(u);
+    p.first = r * tangent(u);
+    p.second = r * r * bend(u);
+    p.third = r * r * r * (6 * c_[3] + u * (24 * c_[4] + u * (60 * c_[5])));
+    return p;
+}
+
 PathPoint Quintic::at(double s) const noexcept {
     const double u = parameter_at(s);
     const PathVector t = tangent(u), b = bend(u), twist = 6 * c_[3] + u * (24 * c_[4] + u * (60 * c_[5]));

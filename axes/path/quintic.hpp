@@ -33,6 +33,8 @@ public:
     [[nodiscard]] double feature(double s) const noexcept;
 
     [[nodiscard]] PathVector point(double u) const noexcept;
+    /// By a length of which u is one part in `stretch`, whatever the curve's own is.
+    [[nodiscard]] PathPoint by_parameter(double u, double stretch) const noexcept;
 
 private:
     static constexpr int spans = 32;  // a power of two

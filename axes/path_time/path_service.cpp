@@ -5,6 +5,7 @@
 
 #include "axes/path_time/along_limits.hpp"
 #include "axes/path_time/braking.hpp"
+#include "axes/path_time/plan_pieces.hpp"
 
 namespace taktwerk::axes {
 namespace {
@@ -13,6 +14,8 @@ constexpr double first_share = 0.98;  // of the limits, that a halt is tried wit
 constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
 constexpr int most_stops = 12;
 constexpr double furthest_border = 0.25;  // s behind the first one
+/// Pieces are cut anew so long before the cycle comes to long ones: more than a plan takes, with its lead.
+constexpr double cut_before = 1.0;       // s
 constexpr double least_factor = 1e-6;     // what is slower stands
 
 }  // namespace
@@ -80,6 +83,14 @@ bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthe
     return false;
 }
 
+/// What runs is what is wanted; before the cycle comes to its long pieces, the same motion in short ones takes its place.
+PathAnswer PathService::shorten(const TimedCurve& curve, std::size_t begin, const RunTask& task) {
+    if (begin == 0 || !has_long_pieces(active_.plan, begin, cut_before)) return PathAnswer::nothing_new;
+    if (!cut_anew(curve, active_.plan, begin, plan_) || plan_.pieces.size() > TimeStretch::most_pieces) return PathAnswer::nothing_new;
+    send(static_cast<int>(begin), task, false, active_.revision);
+    return PathAnswer::offered;
+}
+
 PathAnswer PathService::step(const TimedCurve& curve, double final_end, const PathWish& wish) {
     if (pending_) {
         if (exchange_.offering()) return PathAnswer::waiting;
@@ -127,7 +138,8 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     task.to = std::min(curve.next_stop(task.from), final_end);
     const bool same = !active_.stands && task.velocity_factor == active_.factor && wish.revision == active_.revision &&
                       std::fabs(task.to - active_.to) <= 1e-12 * std::fabs(task.to);
-    if ((!at_rest && same) || !(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
+    if (!at_rest && same) return shorten(curve, static_cast<std::size_t>(begin), task);
+    if (!(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
     if (again && failed_.border >= begin) return PathAnswer::stuck;  // at rest, and it was tried
     ++tries_;
     planner_.plan(curve, limits_, task, plan_, former);

@@ -74,6 +74,7 @@ private:
     [[nodiscard]] int border(const StretchProgress& at, int tried) const;
     [[nodiscard]] bool failed_before(const Failed& now) const noexcept;
     PathAnswer nothing_found(const Failed& now, bool at_rest) noexcept;
+    PathAnswer shorten(const TimedCurve& curve, std::size_t begin, const RunTask& task);
     bool plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former);
     void send(int at_piece, const RunTask& task, bool stands, std::uint32_t revision);
 

@@ -5,6 +5,7 @@
 
 #include "axes/path_time/along_limits.hpp"
 #include "axes/path_time/braking.hpp"
+#include "axes/path_time/plan_pieces.hpp"
 #include "core/math.hpp"
 
 namespace taktwerk::axes {
@@ -14,9 +15,6 @@ constexpr int rounds_at_most = 9;
 constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
 constexpr double slow_share = 0.02;     // of v2: what goes on where a former plan stopped
-constexpr double longest_piece = 0.02;  // s
-constexpr double longest_run = 1e12;    // s: what takes longer is no motion
-constexpr double most_parts = 2500;     // that pieces are cut into
 constexpr double braking_share = 0.7;   // of the deceleration and the jerk, to a lowered velocity
 constexpr double guessed_share = 0.75;  // the same where the search begins: a little below
 constexpr double guessed_below = 0.97;  // of that velocity
@@ -360,49 +358,14 @@ void RunPlanner::slow_down(const LimitUse& use) {
 }
 
 bool RunPlanner::make_pieces(RunPlan& out) const {
-    const auto& nodes = grid_.nodes;
-    out.pieces.clear();
-    double time = 0;
-    const auto add = [&](TimePiece p) {
-        p.begin_time = time;
-        p.part = curve_->part_at(p.begin + p.length / 2);
-        time += p.duration;
-        out.pieces.push_back(p);
-    };
-    const double begins = grid_.start.rest_length, ends = grid_.end.rest_length;
-    RunShape& shape = out.shape;
-    shape.nodes = {nodes.front()};
-    shape.squares = {problem_.node(0, middles_)};
-    shape.middles.clear();
-    if (begins > 0) add(TimePiece::rest(TimePiece::Kind::from_rest, task_.from, begins, shape.squares.front()));
-    double whole = 0;
-    for (std::size_t c = 0; c < middles_.size(); ++c) whole += (nodes[c + 1] - nodes[c]) / std::sqrt(middles_[c]);
-    if (!(whole < longest_run)) return false;  // nor is what is no number
-    const double longest = std::max(longest_piece, whole / most_parts);
-    for (std::size_t c = 0; c < middles_.size(); ++c) {
-        const double length = nodes[c + 1] - nodes[c], last = problem_.node(static_cast<int>(c) + 1, middles_);
-        double middle = middles_[c];
-        // A stretch begins between pieces: a long one is cut, so that nobody who wants to stand waits for its end. The same v2, by de Casteljau.
-        const double cuts = std::floor(TimePiece::moving(nodes[c], length, shape.squares.back(), middle, last).duration / longest);
-        const auto parts = static_cast<int>(std::min(cuts, most_parts)) + 1;
-        for (int k = 0; k < parts; ++k) {
-            const double from = shape.nodes.back(), first = shape.squares.back();
-            const double to = k + 1 == parts ? nodes[c + 1] : nodes[c] + length * (k + 1) / parts, t = 1.0 / (parts - k);
-            const double one = (1 - t) * first + t * middle, two = (1 - t) * middle + t * last;
-            const double cut = k + 1 == parts ? last : (1 - t) * one + t * two, own = k + 1 == parts ? middle : one;
-            add(TimePiece::moving(from, to - from, first, own, cut));
-            shape.nodes.push_back(to);
-            shape.squares.push_back(cut);
-            shape.middles.push_back(own);
-            middle = two;
-        }
-    }
-    add(TimePiece::rest(TimePiece::Kind::to_rest, nodes.back(), ends, out.shape.squares.back()));
-    out.duration = time;
-    out.shape.end = task_.to;
-    out.shape.velocity_factor = task_.velocity_factor;
-    out.shape.coarse = grid_.coarse;
-    return true;
+    RunShape found;
+    found.nodes = grid_.nodes;
+    found.middles = middles_;
+    for (int node = 0; node <= problem_.cells(); ++node) found.squares.push_back(problem_.node(node, middles_));
+    found.end = task_.to;
+    found.velocity_factor = task_.velocity_factor;
+    found.coarse = grid_.coarse;
+    return cut_into_pieces(*curve_, task_.from, grid_.start.rest_length, grid_.end.rest_length, found, out);
 }
 
 bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
@@ -458,7 +421,10 @@ bool RunPlanner::settle_ramps(RunPlan& out) {
         const double time = l.velocity / std::min(l.acceleration, l.deceleration) + l.acceleration / l.jerk;
         return whole > many * time ? time * l.velocity : 0.0;
     };
-    const double up = from_rest() ? way_of_ramp(task_.from, CurveSide::after) : 0, down = way_of_ramp(task_.to, CurveSide::before);
+    // Who goes on to a raised velocity factor has a ramp as well.
+    const double allowed = along_limits(curve_->at(task_.from, CurveSide::after), limits_, task_.velocity_factor).velocity;
+    const bool rises = from_rest() || (task_.halt_share <= 0 && task_.velocity < 0.9 * allowed);
+    const double up = rises ? way_of_ramp(task_.from, CurveSide::after) : 0, down = way_of_ramp(task_.to, CurveSide::before);
     const auto cell_at = [&](double s) {
         const auto behind = std::upper_bound(grid_.nodes.begin(), grid_.nodes.end(), s);
         return std::clamp(static_cast<int>(behind - grid_.nodes.begin()), 1, n);

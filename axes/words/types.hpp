@@ -168,10 +168,15 @@ enum class ErrorId : std::uint16_t {
     frame_lost = 0x004F,      ///< the axis that moves the frame has no position any more, or an error
     frame_too_fast = 0x0050,  ///< the frame moves faster than the members can follow it
     frame_limit = 0x0051,     ///< following it a member would cross a limit, or the arm would be out of reach
+    // Paths that an axis drives.
+    path_stands = 0x0052,      ///< a place of it can only be passed at rest: a corner, a dwell, an M word
+    path_not_closed = 0x0053,  ///< periodic, and it does not go on from its end to its beginning
+    path_too_long = 0x0054,    ///< it has more sections than a group keeps
+    path_limit = 0x0055,       ///< the axis leads a member beyond a limit
     // What a group watches of its tool's point.
-    outside_workspace = 0x0052,     ///< a place of the path is outside the group's workspace, or in a room that is kept free
-    path_following_error = 0x0053,  ///< the tool's point was further from where it should be than the group's window
+    outside_workspace = 0x0056,     ///< a place of the path is outside the group's workspace, or in a room that is kept free
+    path_following_error = 0x0057,  ///< the tool's point was further from where it should be than the group's window
 };
-inline constexpr std::size_t error_id_count = 0x0054;
+inline constexpr std::size_t error_id_count = 0x0058;
 
 }  // namespace taktwerk::axes

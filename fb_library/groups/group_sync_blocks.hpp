@@ -1,5 +1,6 @@
 #pragma once
-// An axis that follows the length of a group's path: MC_SyncAxisToGroup. PLCopen Part 4 v2.0. Real-time safe.
+// An axis that follows the length of a group's path, MC_SyncAxisToGroup, and a group whose path's length follows an axis, MC_SyncGroupToAxis. PLCopen Part 4
+// v2.0. Real-time safe.
 
 #include <cstdint>
 #include <string_view>
@@ -69,6 +70,51 @@ private:
     GroupRef group_{};  // of the last accepted start
     AxisRef axis_{};
     axes::CommandId id_ = 0;
+};
+
+/// Goes on until the group gets another command.
+struct MC_SyncGroupToAxis : GroupCommandBlock<MC_SyncGroupToAxis> {
+    GroupRef AxesGroup{};
+    AxisRef Master{};
+    MC_PATH_DATA_REF PathData{};
+    bool Execute = false;
+    MC_PATH_SYNC_MODE Mode = mcNonPeriodic;
+    std::int16_t TuCNumerator = 1;
+    std::uint16_t TuCDenominator = 1;
+    double Acceleration = 0, Deceleration = 0, Jerk = 0;
+    MC_CoordSystem CoordSystem = mcMCS;
+    MC_BufferMode BufferMode = mcAborting;
+
+    bool Busy = false, Active = false, CommandAborted = false, Error = false;
+    ErrorId ErrorID{};
+    bool InSync = false;
+
+    static constexpr std::string_view summary = "Moves the tool's point along a stored path as an axis moves: on, to a stop and back.";
+    static consteval auto pins() {
+        return pin_table(grouped<&Self::AxesGroup>(),
+                         in_out<&Self::Master>("", "the axis or encoder that drives the path; no member of the group"),
+                         in_out<&Self::PathData>("", "from MC_PathSelect; one that stands nowhere"), grouped<&Self::Execute>(),
+                         in<&Self::Mode>("", "mcNonPeriodic: stands at the path's ends; mcPeriodic: goes on from its end to its beginning"),
+                         in<&Self::TuCNumerator>("", "u of the master ..."),
+                         in<&Self::TuCDenominator>("", "... for so many u of the path; neither is 0"),
+                         in<&Self::Acceleration>("u/s2", "until in sync; 0 or less = the group's default, what the path leaves at most"),
+                         in<&Self::Deceleration>("u/s2", "likewise"), in<&Self::Jerk>("u/s3", "likewise"), grouped<&Self::CoordSystem>(),
+                         in<&Self::BufferMode>("", "mcAborting, mcBuffered"),
+                         grouped<&Self::Busy, &Self::Active, &Self::CommandAborted, &Self::Error, &Self::ErrorID>(),
+                         out<&Self::InSync>("", "the path's length is locked to the master by place"));
+    }
+    [[nodiscard]] axes::GroupCommand command() const noexcept {
+        axes::GroupCommand command{.kind = axes::GroupCommandKind::driven_path, .frame = CoordSystem, .buffer_mode = BufferMode};
+        command.dynamics = {0, Acceleration, Deceleration, Jerk};
+        command.path = PathData.path;
+        command.ticket = PathData.ticket;
+        command.driver = {Master, TuCNumerator, TuCDenominator, Mode};
+        return command;
+    }
+    void show(const MotionContext& ctx) noexcept {
+        const axes::GroupView* view = this->core_.active() ? view_of(ctx, group_) : nullptr;
+        InSync = view != nullptr && view->driver.in_sync;
+    }
 };
 
 }  // namespace taktwerk::fb

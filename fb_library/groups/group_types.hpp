@@ -27,6 +27,8 @@ using enum axes::MC_CIRC_PATHCHOICE;
 using axes::MC_OrientationMode;
 using enum axes::MC_OrientationMode;
 using axes::MC_PATH_REQUEST;
+using axes::MC_PATH_SYNC_MODE;
+using enum axes::MC_PATH_SYNC_MODE;
 using enum axes::MC_PATH_REQUEST;
 
 /// One number a member, by IdentInGroup from 1 on.
@@ -123,6 +125,7 @@ inline constexpr std::array<std::string_view, 15> path_request_names{
     "mcPathSpindleCounter", "mcPathSpindleSpeed", "mcPathSpindleOff",   "mcPathMist",
     "mcPathFlood",          "mcPathCoolantOff",   "mcPathUser"};
 inline constexpr std::array<std::string_view, 2> command_state_names{"mcAccepted", "mcActive"};
+inline constexpr std::array<std::string_view, 2> path_sync_mode_names{"mcNonPeriodic", "mcPeriodic"};
 }  // namespace detail
 
 // clang-format off
@@ -145,6 +148,7 @@ template <> struct PinTypeOf<MC_CIRC_PATHCHOICE> { static constexpr PinType valu
 template <> struct PinTypeOf<MC_PATH_REF> { static constexpr PinType value{PinKind::STRUCT, "MC_PATH_REF"}; };
 template <> struct PinTypeOf<MC_PATH_DATA_REF> { static constexpr PinType value{PinKind::STRUCT, "MC_PATH_DATA_REF"}; };
 template <> struct PinTypeOf<MC_PATH_REQUEST> { static constexpr PinType value{PinKind::ENUM, "MC_PATH_REQUEST", detail::path_request_names}; };
+template <> struct PinTypeOf<MC_PATH_SYNC_MODE> { static constexpr PinType value{PinKind::ENUM, "MC_PATH_SYNC_MODE", detail::path_sync_mode_names}; };
 template <> struct PinTypeOf<MC_CommandState> { static constexpr PinType value{PinKind::ENUM, "MC_COMMAND_STATE", detail::command_state_names}; };
 // clang-format on
 

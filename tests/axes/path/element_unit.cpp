@@ -40,6 +40,29 @@ TEST(PathElement, DerivativesAreThoseByLength) {
     }
 }
 
+// A course has the points, first and second derivatives that it was given at its ends, and is the derivative of itself between. One of them goes twice as fast as its length.
+TEST(PathElement, ACourseMeetsPathsOfTwoLengths) {
+    PathPoint from, to;
+    from.first = at(1, 0);
+    to.at = at(3, 2, 0.5);
+    to.first = at(0, 2);
+    to.second = at(0.2, -0.1);
+    const PathElement course = PathElement::course(from, to, 3);
+    EXPECT_EQ(course.length(), 3);
+    for (const auto& [s, wanted] : {std::pair{0.0, from}, std::pair{3.0, to}}) {
+        EXPECT_LT((course.at(s).at - wanted.at).norm(), 1e-14);
+        EXPECT_LT((course.at(s).first - wanted.first).norm(), 1e-14);
+        EXPECT_LT((course.at(s).second - wanted.second).norm(), 1e-14);
+    }
+    const double h = 1e-4;
+    for (const double s : {0.3, 1.2, 2.6}) {
+        EXPECT_LT((course.at(s).first - (course.at(s + h).at - course.at(s - h).at) / (2 * h)).norm(), 1e-7);
+        EXPECT_LT((course.at(s).second - (course.at(s + h).first - course.at(s - h).first) / (2 * h)).norm(), 1e-6);
+        EXPECT_LT((course.at(s).third - (course.at(s + h).second - course.at(s - h).second) / (2 * h)).norm(), 1e-5);
+    }
+    EXPECT_LT((course.shifted(at(1, 1)).at(1.2).at - course.at(1.2).at - at(1, 1)).norm(), 1e-14);
+}
+
 TEST(PathElement, LineOfThreeFourFive) {
     const PathElement line = PathElement::line(at(1, 2, 3), at(4, 6, 3));
 

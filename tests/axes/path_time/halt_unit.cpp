@@ -98,6 +98,56 @@ TEST(Halt, ComesSoonWheneverItIsWished) {
     EXPECT_GT(in_ramps, 40);
 }
 
+// As long as it may last, an hour, a day: from a cruise a halt has taken a fiftieth of the velocity as soon as in a short run. By hand: the piece under way and the lead with the one
+// in which that ends, 48 ms at most, and the first fiftieth with nine tenths of the jerk, sqrt(2 * 2 / 9000) = 21 ms. A lowered override likewise, with seven tenths: 24 ms.
+TEST(Halt, ComesAsSoonInARunOfHours) {
+    constexpr double velocity = 100;
+    for (const double seconds : {60.0, 600.0, 3600.0, 86'400.0})
+        for (const bool stands : {true, false}) {
+            Line line(velocity * seconds, velocity);
+            const PathWish go, wish{.motion = stands ? PathWish::Motion::stand : PathWish::Motion::go, .velocity_factor = stands ? 1 : 0.5};
+            int worst = 0;
+            for (int when = 0; when < 12; ++when) {
+                for (int i = 0; i < 1237; ++i) line.step(go);
+                const double top = line.player.now().velocity;
+                ASSERT_GT(top, 0.99 * velocity) << seconds << ' ' << stands << ' ' << when;
+                int cycles = 0;
+                while (line.player.now().velocity > 0.98 * top && cycles < 5000) {
+                    line.step(wish);
+                    ++cycles;
+                }
+                worst = std::max(worst, cycles);
+                for (int i = 0; i < 700; ++i) line.step(wish);
+                for (int i = 0; i < 700; ++i) line.step(go);
+            }
+            EXPECT_LE(worst, 80) << seconds << " s, ms";
+        }
+}
+
+// The same motion, cut anew as it is gone: s, v and a of a long run are those of its plan.
+TEST(Halt, ALongRunIsGoneAsItWasPlanned) {
+    constexpr double velocity = 100, seconds = 600;
+    Line line(velocity * seconds, velocity);
+    line.step({});
+    const RunPlan plan = line.service.last_plan();
+    ASSERT_GT(plan.duration, seconds);
+    double off = 0, fastest_change = 0, before = 0, a_before = 0;
+    std::size_t i = 0;
+    for (int cycles = 0; cycles < 12'000; ++cycles) {
+        line.step({});
+        const double t = (cycles + 1) * cycle;
+        while (i + 1 < plan.pieces.size() && plan.pieces[i + 1].begin_time <= t) ++i;
+        const PathMotion m = plan.pieces[i].at(t - plan.pieces[i].begin_time);
+        const auto& now = line.player.now();
+        off = std::max(off, std::fabs(now.s - m.s));
+        fastest_change = std::max(fastest_change, std::fabs(now.velocity - before - cycle * (now.acceleration + a_before) / 2));
+        before = now.velocity;
+        a_before = now.acceleration;
+    }
+    EXPECT_LE(off, 1e-8 * plan.pieces.back().begin);
+    EXPECT_LE(fastest_change, jerk * cycle * cycle / 2 * 1.001);
+}
+
 // The same of a lowered override, with seven tenths of the limits: on the cells of the former plan none was found in a cruise, and it had no effect.
 TEST(Halt, ALoweredOverrideIsComeToSoon) {
     int lowered = 0;

@@ -441,6 +441,32 @@ TEST(GroupArmBlocks, ADirectMoveTakesTheConfigurationItIsTold) {
 }
 
 // G-077: without motion, absolute and relative, in the axes and in a frame; in motion refused, and nothing has changed.
+// G-077: in the scan in which it is set, whoever is called behind it reads the new place, in every frame.
+TEST(GroupArmBlocks, ASetPositionIsReadInTheSameScan) {
+    FramesPlc plc(3, cartesian_arm());
+    MC_GroupSetPosition set;
+    set.AxesGroup = plc.group;
+    set.Position.A.Axes = {100, 200, 300};
+    MC_GroupReadPosition axes, machine;
+    axes.AxesGroup = machine.AxesGroup = plc.group;
+    axes.Enable = machine.Enable = true;
+    machine.CoordSystem = mcMCS;
+    set.Execute = true;
+    plc.program = [&](const MotionContext& ctx) {
+        set(ctx);
+        axes(ctx);
+        machine(ctx);
+    };
+    plc.scan();
+    ASSERT_FALSE(set.Error);
+    EXPECT_NEAR(axes.Position.A.Axes[1], 200, 1e-3);
+    EXPECT_NEAR(machine.Position.C.Tcp.X, 100, 1e-3);
+    EXPECT_NEAR(machine.Position.C.Tcp.Y, 200, 1e-3);
+    EXPECT_NEAR(machine.Position.C.Tcp.Z, 300, 1e-3);
+    EXPECT_NEAR(plc.rig.view().tool_set[1], 200, 1e-3);
+    plc.program = {};
+}
+
 TEST(GroupArmBlocks, ThePositionOfTheGroupIsSetWithoutMotion) {
     FramesPlc plc(3, cartesian_arm());
     MC_GroupSetPosition set;

@@ -50,6 +50,7 @@ bool same_type(const std::string& standard, std::string_view ours) {
     if (standard == "REAL") return ours == "LREAL";
     if (standard == "ARRAY OF REAL") return ours == "ARRAY OF LREAL";
     if (standard == "ARRAY[6] OF REAL") return ours == "ARRAY[6] OF LREAL";
+    if (standard.starts_with('(')) return ours.starts_with("MC_");  // an enumeration whose name is not known
     if (standard == "WORD") return ours == "WORD" || ours == "UINT";
     return standard == ours;
 }

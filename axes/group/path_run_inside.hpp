@@ -1,0 +1,63 @@
+#pragma once
+// What is inside a PathRun: for path_run.cpp and driven_run.cpp. It includes Eigen.
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "axes/group/group_planner.hpp"
+#include "axes/group/path_drive.hpp"
+#include "axes/group/path_run.hpp"
+#include "axes/path_time/path_player.hpp"
+
+namespace taktwerk::axes {
+
+struct PathRun::Inside {
+    /// How soon a plan can be in the cycle, s, and in cycles at least. Plans that take longer make it grow.
+    static constexpr double least_lead = 0.008;
+    static constexpr double least_lead_cycles = 4;
+    /// How far a stored path is known ahead: what braking takes has to fit, also in short pieces. Some 5 MB a track.
+    static constexpr std::size_t sections_of_stored_paths = 4096;
+
+    Inside(std::span<Axis> axes, const AxisGroupConfig& config, Duration its_cycle, const PathShelf* paths)
+        : link(paths != nullptr ? sections_of_stored_paths : RunTrack::usual_sections),
+          arm(config.kinematics),
+          workspace(config.workspace),
+          planner(link, {arm.get(), workspace.get(), 0, {}}, std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)), paths,
+                  config.millimetre),
+          drive(axes) {}
+
+    GroupLink link;
+    std::shared_ptr<const Kinematics> arm;
+    std::shared_ptr<const Workspace> workspace;
+    GroupPlanner planner;
+    PathDrive drive;
+
+    // The cycle's own.
+    GroupOrder wish;
+    bool told = true;  // the wish
+    std::uint32_t life = 0;
+    std::uint32_t begun = 0;  // runs, in this life
+    RunTrack* track = nullptr;
+    std::optional<PathPlayer> player;
+    std::uint32_t driven_part = 0;  // of the track, where an axis drives it
+    std::array<std::uint8_t, max_path_axes> places{};
+    std::array<MemberLimits, max_path_axes> limits{};
+    std::size_t members = 0;
+    MemberVector q{}, velocity{}, acceleration{}, before{};  // before: the acceleration of the cycle before
+    double period = 1;
+    WayPoint at;
+    PathNote note;
+    bool noted = false;
+    std::array<GroupVerdict, 32> verdicts{};
+    std::size_t next_verdict = 0;
+    std::uint32_t late = 0;
+
+    /// It is on a run.
+    [[nodiscard]] bool goes() const noexcept { return player.has_value() || drive.on(); }
+    [[nodiscard]] std::uint32_t part() const noexcept { return player ? player->part() : driven_part; }
+    /// Of that run.
+    [[nodiscard]] double place() const noexcept { return player ? player->now().s : drive.place(); }
+};
+
+}  // namespace taktwerk::axes
