@@ -33,7 +33,7 @@ void GroupPlanner::restart(const GroupOrder& order) {
     runs_ = {};
     for (auto& track : link_.tracks) track.ready.store(0, std::memory_order_release);
     next_ = 0;
-    space_ = {arm_, order.members, order.limits};
+    space_ = {arm_, order.members, order.limits, order.tool_velocity};
     end_ = {order.from, {}};
     if (arm_ != nullptr) end_.configuration.branch = arm_->configuration(joints_of(order.from)).branch;
 }
@@ -71,7 +71,8 @@ void GroupPlanner::place_moves() {
             continue;
         }
         if (!first_) first_ = shape_of(move, end_, space_);
-        if (first_->error != ErrorId::none || first_->empty) say(move.id, first_->error);
+        if (first_->error != ErrorId::none || first_->empty)
+            (void)link_.verdicts.try_push({life_, move.id, first_->error, false, 0, first_->jog_end, static_cast<std::uint8_t>(first_->jog_place)});
         else if (!place(move, *first_)) return;  // later: no track is free yet
         else end_ = first_->end;
         moves_.pop_front();
