@@ -46,6 +46,7 @@ enum class CommandKind : std::int32_t {
     group_reset,
     group_enable,
     group_disable,
+    group_jog,
 };
 
 /// What a command acts on. `_or_all`: also "all". point: an input or an output, as its request says. variable: of a
@@ -61,7 +62,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 32> command_words{{
+inline constexpr std::array<CommandWord, 33> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -114,6 +115,8 @@ inline constexpr std::array<CommandWord, 32> command_words{{
      "it takes commands; its axes need power"},
     {CommandKind::group_disable, "group_disable", runtime::OperatorAction::group_disable, TargetKind::group, "", "",
      "stop on the path, then take no commands"},
+    {CommandKind::group_jog, "group_jog", runtime::OperatorAction::group_jog, TargetKind::group, "velocity", "",
+     "move while held, in a frame: press once, renew each 50 ms, velocity 0 stops"},
 }};
 
 namespace command_word_check {
@@ -121,7 +124,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::group_disable) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::group_jog) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "axes/excitation/measure_order.hpp"
+#include "axes/group/group_types.hpp"
 #include "axes/words/types.hpp"
 #include "core/fixed_text.hpp"
 #include "core/time.hpp"
@@ -76,11 +77,22 @@ enum class OperatorAction : std::uint8_t {
     group_reset,     ///< members in ErrorStop are reset, then the group leaves GroupErrorStop
     group_enable,    ///< GroupDisabled -> GroupStandby [no_control while another party has a member]
     group_disable,   ///< comes to rest on the path first [no_control likewise]
+    group_jog,       ///< value = part of the jogging velocities, 0 to 1; 0 stops. `group_jog` says which way; value2 = distance, 0: as far as it
+                     ///< can. flag = the key was pressed: starts. Without it: a heartbeat, each 50 ms, renews the lease, and may say another way
+                     ///< in the same frame [bad_value; no_control; refused_by_axis: group_disabled, invalid_parameter, no_kinematics,
+                     ///< not_powered, ..., state_forbids while it comes to rest for another mode; of a heartbeat what ended the jog, else stale]
 };
 
 [[nodiscard]] constexpr bool is_of_a_group(OperatorAction action) noexcept {
-    return action >= OperatorAction::group_halt && action <= OperatorAction::group_disable;
+    return action >= OperatorAction::group_halt && action <= OperatorAction::group_jog;
 }
+
+/// Which way a person jogs a group: a slot is a member by its place in ACS, else X Y Z RX RY RZ of the frame.
+struct GroupJogOrder {
+    axes::MC_CoordSystem frame = axes::mcACS;
+    std::uint16_t plus = 0, minus = 0;  ///< bit i: slot i; both: that slot stands
+    friend bool operator==(const GroupJogOrder&, const GroupJogOrder&) = default;
+};
 
 /// One command. Trivially copyable: goes through a ring.
 struct OperatorCommand {
@@ -92,6 +104,7 @@ struct OperatorCommand {
     std::uint16_t index = 0xFFFF;
     double value = 0, value2 = 0;
     axes::MeasureOrder measure;               ///< of a measure
+    GroupJogOrder group_jog;                  ///< of a group_jog
     std::uint32_t client = 0;                 ///< who; answers go there
     std::uint64_t sequence = 0;               ///< of the client; a repeated one is answered again, not executed again
     Instant expires{};                        ///< older than this at drain: refused as stale

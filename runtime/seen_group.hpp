@@ -38,10 +38,14 @@ struct SeenGroup {
         double velocity = 0, acceleration = 0;
         axes::PathLimiter limiter = axes::PathLimiter::none;
         std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
+        double tool_limit = 0;            ///< of the tool's point in set-up mode, whoever moves it; 0: none holds
         double to_go = 0, progress = 0;   ///< length left, and 0 to 1
         Duration remaining{};             ///< as planned now; 0 where nobody can say
     };
     Along along;
+
+    axes::JogEnd jog_end = axes::JogEnd::none;  ///< why the last jog could not go on, until something else moves the group
+    std::uint8_t jog_end_place = 0;             ///< JogEnd::member_limit: whose
 
     axes::GroupCommandKind active_kind = axes::GroupCommandKind::none;
     axes::CommandId active = 0;

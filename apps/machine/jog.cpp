@@ -1,4 +1,4 @@
-// taktwerk jog AXIS --velocity V: the axis moves while this command lives. It presses once and renews each 50 ms; when it ends or
+// taktwerk jog AXIS --velocity V, jog GROUP DIRECTION... --velocity PART: the axis or the group moves while this command lives. It presses once and renews each 50 ms; when it ends or
 // dies, the axis stops (by letting go, or by its lease in the runtime).
 
 #include "apps/machine/jog.hpp"
@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "apps/machine/held_velocity.hpp"
+#include "apps/machine/jog_group.hpp"
 #include "apps/machine/remote.hpp"
 #include "apps/machine/stop_signal.hpp"
 #include "apps/terminal/duration_option.hpp"
@@ -29,6 +30,7 @@ struct JogOptions {
     RemoteOptions remote;
     std::string axis, speed;
     double for_s = 0;
+    GroupJogOptions group;
 };
 
 /// The axis' own object of the state; empty when something went wrong.
@@ -38,7 +40,36 @@ nlohmann::ordered_json axis_of(const nlohmann::ordered_json& state, const std::s
     return {};
 }
 
+/// A group is named, and no way to go.
+Result<bool> is_a_group(const JogOptions& options, hmi::Client& client) {
+    if (!options.group.directions.empty()) return true;
+    const auto layout = layout_of(client);
+    if (!layout) return layout.error();
+    const auto names = [&](const char* what) {
+        for (const auto& one : layout->at(what))
+            if (one.at("name") == options.axis) return true;
+        return false;
+    };
+    if (names("groups") && !names("axes"))
+        return Error{"usage.direction", options.axis, "it is a group of axes, and no direction says where it is to go",
+                     fmt::format("Give one or more: `taktwerk jog {} x+ --velocity 20%`, `taktwerk jog {} AXIS+ --frame acs --velocity 20%`.", options.axis, options.axis)};
+    if (options.group.frame != "mcs" || !options.group.distance.empty())
+        return Error{"usage.frame", options.axis, "--frame and --distance are of a group, and an axis has one direction alone",
+                     "Leave them out, or name a group and a direction."};
+    return false;
+}
+
 int jog(const JogOptions& options, hmi::Client& client) {
+    const auto of_a_group = is_a_group(options, client);
+    if (!of_a_group) return report(options.remote, of_a_group.error());
+    if (*of_a_group) {
+        auto group = options.group;
+        group.group = options.axis;
+        group.speed = options.speed;
+        group.for_s = options.for_s;
+        return jog_group(options.remote, group, client);
+    }
+
     const auto velocity = velocity_on(client, options.axis, options.speed);
     if (!velocity) return report(options.remote, velocity.error());
     watch_stop_signals();
@@ -91,11 +122,17 @@ int jog(const JogOptions& options, hmi::Client& client) {
 }  // namespace
 
 void add_jog(CLI::App& app, Action& action) {
-    auto* sub = app.add_subcommand("jog", "move an axis while this command lives, in manual or set-up mode");
+    auto* sub = app.add_subcommand("jog", "move an axis or a group while this command lives, in manual or set-up mode");
     auto options = std::make_shared<JogOptions>();
     add_remote_options(*sub, options->remote);
-    sub->add_option("AXIS", options->axis, "axis")->required();
-    sub->add_option("--velocity", options->speed, "signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s")->required();
+    sub->add_option("AXIS", options->axis, "axis, or group of axes with a direction behind it")->required();
+    sub->add_option("DIRECTION", options->group.directions, "of a group, one or more: x+ y- z+ rx+ ry+ rz+; with --frame acs the names of its axes: shoulder+");
+    sub->add_option("--velocity", options->speed,
+                    "of an axis, signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s. Of a group: the part of its jogging velocity, 20%")
+        ->required();
+    sub->add_option("--frame", options->group.frame,
+                    "of a group: mcs (the machine), acs (each axis), tcs (the tool), wcs (the world), pcs, pcs_2 to pcs_8 (a product); default mcs");
+    sub->add_option("--distance", options->group.distance, "of a group: stop exactly behind it: 10mm, 5deg");
     add_duration(*sub, "--for", options->for_s, "let go after this time; default: at Ctrl-C");
     sub->callback([&action, options] {
         action = [options] { return with_machine(options->remote, [&](hmi::Client& client) { return jog(*options, client); }); };

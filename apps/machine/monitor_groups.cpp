@@ -59,6 +59,7 @@ private:
     [[nodiscard]] std::string limited() const {
         const auto limiter = text("limiter");
         if (limiter == "axis_limit") return ", held back by axis " + text("limiting_axis");
+        if (limiter == "setup_velocity") return ", held at the set-up velocity of the tool";
         if (limiter == "override_factor") return ", held by the override";
         if (limiter == "command") return ", as commanded";
         return "";

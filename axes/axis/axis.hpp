@@ -82,6 +82,8 @@ public:
     void shut_down() noexcept;
     /// Changes owner and speed cap; stops the axis first when it moves.
     void set_mode(OperatingMode mode) noexcept;
+    /// u/s: what that mode leaves of every velocity; infinite in automatic.
+    [[nodiscard]] double velocity_of_mode() const noexcept;
     /// The new owner has the axis at once, but it stops before it takes motion. Returning it gives it to the mode's default owner.
     void take_control(Owner owner) noexcept;
     void release_control(Owner owner) noexcept;

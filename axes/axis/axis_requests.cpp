@@ -200,6 +200,8 @@ void Axis::set_mode(OperatingMode mode) noexcept {
     release_control(axis.body.owner);
 }
 
+double Axis::velocity_of_mode() const noexcept { return core_->body.velocity_cap(); }
+
 void Axis::take_control(Owner owner) noexcept {
     if (owner == core_->body.owner) return;
     core_->plain.disturb();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "axes/axis/aim.hpp"
 #include "axes/axis/command_check.hpp"
@@ -70,7 +71,8 @@ bool LimitGuard::guard_software_limits(const MotionState& before) noexcept {
     if ((next.velocity == 0 && next.acceleration == 0) || (!base_might_pass && limits_.sum_stays_inside())) return false;
     auto limits = full_limits(body_.config.limits);
     // What is planned to end on the limit must not be taken for more because of its last digits.
-    const double surely = motion_.goal.kind == Goal::Kind::velocity ? 1 : 1 - 1e-9;
+    const bool planned = motion_.goal.kind != Goal::Kind::velocity;
+    const double surely = planned ? 1 - 1e-9 : 1;
     // Also the one in the back of an axis that is turning round: two layers may do that harder than one can brake.
     double sense = 0, edge = 0, edge_local = 0;
     for (const double way : {1.0, -1.0}) {
@@ -79,7 +81,9 @@ bool LimitGuard::guard_software_limits(const MotionState& before) noexcept {
         const double room = way * (local - next.position);
         if (room > stops_within(next, body_.config.limits)) continue;
         const double reach = reach_of_stop(next, in_each_direction(limits, body_.config.limits), way);
-        if (reach <= 0 || reach * surely <= room) continue;
+        // Within microseconds of its end the room is a difference of some last digits, and more of them than of what is left.
+        const double grain = planned ? 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(local), std::abs(next.position)) : 0;
+        if (reach <= 0 || reach * surely <= room + grain) continue;
         sense = way;
         edge = limit;
         edge_local = local;

@@ -3,6 +3,9 @@
 #include "axes/group/axis_group.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include "axes/group/motion_target.hpp"
@@ -11,6 +14,8 @@
 namespace taktwerk::axes {
 
 namespace {
+
+constexpr double unlimited_velocity = std::numeric_limits<double>::infinity();
 
 PathDynamics resolved(const PathDynamics& wanted, const PathDynamics& fallback) noexcept {
     const auto pick = [](double value, double other) { return value > 0 ? value : other; };
@@ -102,7 +107,7 @@ Override AxisGroup::factors() const noexcept {
 
 /// Whoever slows one of its axes down slows the path down: else that axis would leave it, or nothing would happen at all.
 void AxisGroup::take_operators_override() noexcept {
-    double least = operators_override_;
+    double least = hand_.override_factor;
     for (std::size_t i = 0; i < most_members; ++i)
         if (members_.has(i)) least = std::min(least, members_.axis(i).view().operators_override);
     if (least == view_.operators_override) return;
@@ -112,9 +117,18 @@ void AxisGroup::take_operators_override() noexcept {
 
 ErrorId AxisGroup::set_operators_override(double factor) noexcept {
     if (!(factor >= 0 && factor <= 1)) return ErrorId::invalid_override;
-    operators_override_ = factor;
+    hand_.override_factor = factor;
     take_operators_override();
     return ErrorId::none;
+}
+
+void AxisGroup::set_mode(OperatingMode mode) noexcept {
+    const bool setup = mode == OperatingMode::setup;
+    if (setup == hand_.setup) return;
+    hand_.setup = setup;
+    run_.keep_tool_below(setup && config_.kinematics ? setup_velocity_of(config_) : unlimited_velocity);
+    if (setup) halt();
+    publish();
 }
 
 void AxisGroup::watch_reset() noexcept {
@@ -163,6 +177,16 @@ void AxisGroup::show_tool() noexcept {
     const auto& tool = moves_with_tool() ? run_.carried().tool : equipment_.tool_pose();
     if (config_.kinematics) see_tool(view_, config_.kinematics.get(), tool);
     view_.path_deviation = members_.led() ? axes::path_deviation(view_, members_, config_.kinematics.get(), tool) : 0;
+    see_tool_limit();
+}
+
+/// Who holds the path back: known once the tool's speed is.
+void AxisGroup::see_tool_limit() noexcept {
+    constexpr double in_use = 0.98;  // as of the axes' limits (path_run.cpp)
+    const bool moves = view_.limiter == PathLimiter::command || view_.limiter == PathLimiter::axis;
+    if (view_.tool_limit == 0 || !view_.tool_known || !moves) return;
+    const auto& v = view_.tool_velocity;
+    if (std::hypot(v[0], v[1], v[2]) >= in_use * view_.tool_limit) view_.limiter = PathLimiter::setup_velocity;
 }
 
 void AxisGroup::go_on_homing() noexcept {
@@ -230,13 +254,14 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         const bool moving = tracking_.active();
         const auto caps = moving ? tracking_.path_caps(members_) : JoggingDynamics{};
         if (!(way ? run_.restart(members_, factors(), moving ? &caps : nullptr, moving ? &still_ : nullptr)
-                  : run_.restart(members_, jog_.factors(factors()), &view_.jogging_dynamics)))
+                  : run_.restart(members_, jog_.factors(factors()), &jog_.dynamics())))
             return std::nullopt;
         sent_ = 0;
     }
     send_waiting();
     if (const auto said = run_.verdict(active.id)) {
         if (goes_stored_path(command.kind) && said->line != 0) view_.path.place = *said;
+        std::tie(view_.jog_end, view_.jog_end_place) = run_.jog_end(active.id);
         return said->error;
     }
     if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
@@ -264,7 +289,7 @@ void AxisGroup::send_waiting() noexcept {
         const bool stored = goes_stored_path(command.kind) || (before != nullptr && goes_stored_path(before->command.kind));
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         const bool sent = command.kind == GroupCommandKind::jog
-                              ? run_.send(accepted.id, command, place, view_.jogging_dynamics.path, false, &jog_.pressed_at())
+                              ? run_.send(accepted.id, command, place, jog_.dynamics().path, false, &jog_.pressed_at())
                               : run_.send(accepted.id, command, place, resolved(command.dynamics, view_.default_dynamics), joins);
         if (!sent) return false;
         sent_ = accepted.id;
@@ -377,6 +402,7 @@ void AxisGroup::publish() noexcept {
     view_.path_acceleration = led ? along.acceleration : 0;
     view_.limiter = led ? run_.limiter() : PathLimiter::none;
     view_.limiting_place = run_.narrowest();
+    view_.tool_limit = hand_.setup && config_.kinematics ? setup_velocity_of(config_) : 0;
     const bool on_way = begun_ && queue_.has_active() && goes_a_way(queue_.active().command.kind) && run_.exists();
     view_.elapsed = begun_ && queue_.has_active() ? elapsed_ : Duration{};
     view_.remaining_distance = on_way ? run_.remaining() : 0;

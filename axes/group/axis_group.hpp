@@ -55,6 +55,9 @@ public:
     void let_go() noexcept;
     /// For a member that it leads: halts on the path, and shuts that axis down when it stands (Axis::shut_down).
     void shut_down(AxisRef axis) noexcept;
+    /// Of the machine. In set-up mode the tool's point goes no faster than the configured set-up velocity, whoever moves it, from the next path on that
+    /// begins at rest; what is on the way when that mode is entered comes to rest first, as by halt().
+    void set_mode(OperatingMode mode) noexcept;
     /// A person's factor on the velocity along the path, 0 to 1, beside MC_GroupSetOverride; stays until it is changed. Errors: invalid_override.
     ErrorId set_operators_override(double factor) noexcept;
 
@@ -79,6 +82,8 @@ private:
     ErrorId set_position(const GroupCommand& command, Owner owner) noexcept;
     [[nodiscard]] JointVector here() const noexcept;
     [[nodiscard]] Override factors() const noexcept;
+    [[nodiscard]] JoggingDynamics jogging_of(const GroupCommand& command) const noexcept;
+    void see_tool_limit() noexcept;
     void take_operators_override() noexcept;
     [[nodiscard]] ErrorId refuse(const GroupCommand& command, Owner owner) const noexcept;
     [[nodiscard]] ErrorId refuse_state(const GroupCommand& command) const noexcept;
@@ -156,7 +161,10 @@ private:
     bool begun_ = false;           // the active command has begun
     bool interrupted_ = false;     // it stands, and what was under way may go on
     std::uint16_t going_off_ = 0;  // places that are shut down when it stands
-    double operators_override_ = 1;
+    struct {
+        double override_factor = 1;
+        bool setup = false;  // the machine's mode
+    } hand_;
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
     CommandId sent_ = 0;  // the last one that the planner has
     Duration elapsed_{};  // of the active command

@@ -82,11 +82,16 @@ struct CirclePins {
     friend bool operator==(const CirclePins&, const CirclePins&) = default;
 };
 
+/// Whose hand a jog is in, and so by which dynamics it goes: a program's by those that were written for the group (MC_GroupWriteJoggingDynamics), a
+/// person's by what the mode of the machine leaves each member, and by the group's set-up velocity of the tool's point.
+enum class JogHand : std::uint8_t { program, person };
+
 /// How far a jog goes at most from where it was pressed: u of the tool's point, rad of its turns; in ACS u of each member, 0 = as far as it can. And what
 /// share of the jogging dynamics it takes (HoldJog).
 struct JogPins {
     double linear = 0, angular = 0;
     double velocity = 1, acceleration = 1;
+    JogHand hand = JogHand::program;
     friend bool operator==(const JogPins&, const JogPins&) = default;
 };
 

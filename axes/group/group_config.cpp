@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "core/nearest_name.hpp"
@@ -52,6 +54,14 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
                             "give a radius above 0, and of each interval a lower end below the upper one");
         if (!std::isfinite(group.following.window) || group.following.window < 0 || group.following.time < Duration{})
             problem("following", "the window of its following error is negative or none", "give a distance above 0, or leave it out");
+        const double most = most_setup_velocity * group.millimetre;
+        if (!(group.setup_velocity >= 0 && group.setup_velocity <= most * (1 + 1e-12)))
+            problem(
+                "setup_velocity",
+                fmt::format(
+                    "setup_velocity is {:g} {}/s, and in set-up mode the tool's point goes 250 mm/s at most (reduced speed, ISO 10218-1)",
+                    group.setup_velocity, group.unit),
+                fmt::format("give a velocity above 0 and up to {:g} {}/s; without it that holds", most, group.unit));
         for (const double value : {group.default_dynamics.velocity, group.default_dynamics.acceleration,
                                    group.default_dynamics.deceleration, group.default_dynamics.jerk})
             if (!std::isfinite(value) || value < 0) {

@@ -31,11 +31,20 @@ struct AxisGroupConfig {
     PathFollowing following{};                       ///< else path_following_error, while the group moves
     double millimetre = 1;                           ///< in the unit of its paths: what stored paths are written in
     PathDynamics default_dynamics{};                 ///< 0 = what the axes' limits leave on a path
+    double setup_velocity = 0;                       ///< u/s of the tool's point in set-up mode; 0 = most_setup_velocity
     std::string unit = "mm";                         ///< u of lengths and paths, for people
 };
 
+/// Reduced speed of ISO 10218-1, 5.6.2, in mm/s: what the tool's point goes in set-up mode at most. Taktwerk is not safety-rated: whatever has to
+/// protect a person measures that speed by itself.
+inline constexpr double most_setup_velocity = 250;
+/// u/s
+[[nodiscard]] inline double setup_velocity_of(const AxisGroupConfig& group) noexcept {
+    return group.setup_velocity > 0 ? group.setup_velocity : most_setup_velocity * group.millimetre;
+}
+
 /// Every problem; `axes`: the names of the machine's axes. Codes: group.no_name, group.name_twice, group.too_many_members, group.unknown_axis,
-/// group.axis_twice, group.dynamics, group.kinematics, group.workspace, group.following.
+/// group.axis_twice, group.dynamics, group.kinematics, group.workspace, group.following, group.setup_velocity.
 [[nodiscard]] std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<const std::string> axes);
 
 }  // namespace taktwerk::axes

@@ -54,8 +54,9 @@ ErrorId GroupJog::refuse(const HoldJog& held, const JogGround& ground) noexcept 
     return usable ? ErrorId::none : ErrorId::invalid_override;
 }
 
-void GroupJog::press(const GroupCommand& command, Duration lease) noexcept {
+void GroupJog::press(const GroupCommand& command, Duration lease, const JoggingDynamics& dynamics) noexcept {
     *this = {};
+    dynamics_ = dynamics;
     held_.direction = gone_ = command.target;
     held_.velocity = command.jog.velocity;
     held_.acceleration = command.jog.acceleration;
@@ -113,6 +114,14 @@ ErrorId write_jogging(const JoggingDynamics& wanted, JoggingDynamics& kept) noex
         put(kept.jerk[i], wanted.jerk[i]);
     }
     return ErrorId::none;
+}
+
+JoggingDynamics dynamics_by_hand(const GroupMembers& members, double tool_velocity) noexcept {
+    JoggingDynamics dynamics;
+    dynamics.path.velocity = tool_velocity;
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (members.has(i)) dynamics.velocity[i] = std::min(members.axis(i).config().limits.velocity, members.axis(i).velocity_of_mode());
+    return dynamics;
 }
 
 Duration jog_lease_of(const GroupMembers& members) noexcept {

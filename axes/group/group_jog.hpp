@@ -33,8 +33,8 @@ public:
     /// Of another direction the same is asked as of the first one; 0 lets go, and is never refused.
     [[nodiscard]] static ErrorId refuse(const HoldJog& held, const JogGround& ground) noexcept;
 
-    /// It is pressed: `lease` from now on.
-    void press(const GroupCommand& command, Duration lease) noexcept;
+    /// It is pressed: `lease` from now on, and by these dynamics until it is over.
+    void press(const GroupCommand& command, Duration lease, const JoggingDynamics& dynamics) noexcept;
     void hold(const HoldJog& held) noexcept;
     void pass(Duration period) noexcept { silent_ += period; }
 
@@ -47,12 +47,14 @@ public:
     /// What is on the way, once at rest, to be gone next; `here`: where the members stand. `direction` becomes the one to be gone.
     void turn(JointVector& direction, const JointVector& here) noexcept;
     [[nodiscard]] const JointVector& pressed_at() const noexcept { return pressed_at_; }
+    [[nodiscard]] const JoggingDynamics& dynamics() const noexcept { return dynamics_; }
 
     /// With the group's own.
     [[nodiscard]] Override factors(const Override& of_group) const noexcept;
 
 private:
     HoldJog held_{};
+    JoggingDynamics dynamics_{};
     JointVector gone_{};        // the direction that is on the way
     JointVector pressed_at_{};  // where the members were when that began first
     bool begun_ = false;
@@ -61,6 +63,9 @@ private:
 
 /// Above 0 is written, the others stay. Errors, with nothing written: invalid_velocity, invalid_dynamics (not finite).
 [[nodiscard]] ErrorId write_jogging(const JoggingDynamics& wanted, JoggingDynamics& kept) noexcept;
+
+/// A person's: each member as fast as the mode of the machine lets it, the tool's point at `tool_velocity` [u/s]; accelerations are left to the limits.
+[[nodiscard]] JoggingDynamics dynamics_by_hand(const GroupMembers& members, double tool_velocity) noexcept;
 
 /// The shortest patience of the members with a jog that nobody renews.
 [[nodiscard]] Duration jog_lease_of(const GroupMembers& members) noexcept;

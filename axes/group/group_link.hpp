@@ -9,11 +9,12 @@
 #include <cstdint>
 #include <memory>
 
-#include "axes/group/group_command.hpp"
+#include "axes/group/group_view.hpp"
 #include "axes/group/member_limits.hpp"
 #include "axes/group/path_drive.hpp"
 #include "axes/group/path_note.hpp"
 #include "axes/group/way_point.hpp"
+#include "axes/path_time/along_limits.hpp"
 #include "axes/path_time/stretch_exchange.hpp"
 #include "axes/pose.hpp"
 #include "core/spsc_ring.hpp"
@@ -39,6 +40,7 @@ struct GroupOrder {
     std::uint8_t members = 0;
     MemberVector from{};
     std::array<MemberLimits, max_path_axes> limits{};
+    double tool_velocity = unlimited;  ///< u/s of the tool's point
 
     CommandId id = 0;
     GroupCommand command{};              ///< target by rank; dynamics resolved
@@ -61,6 +63,8 @@ struct GroupVerdict {
     bool standing = false;          ///< the run that it is on has come to rest for good
     std::uint32_t run = 0;          ///< of a standing one: which run that is, from 1
     std::uint32_t line = 0;         ///< of a stored path: where in its text; 0: nowhere
+    JogEnd jog_end = JogEnd::none;  ///< of a jog that has nothing to go
+    std::uint8_t jog_place = 0;     ///< JogEnd::member_limit: whose, by rank
 };
 
 struct RunTrack {

@@ -39,6 +39,7 @@ void GroupPlanner::restart(const GroupOrder& order) {
     next_ = 0;
     space_.members = order.members;
     space_.limits = order.limits;
+    space_.tool_velocity = order.tool_velocity;
     end_ = {order.from, {}};
     if (space_.arm != nullptr) end_.configuration.branch = space_.arm->configuration(joints_of(order.from)).branch;
 }
@@ -81,7 +82,9 @@ void GroupPlanner::place_moves() {
             continue;
         }
         if (!first_) first_ = shape_of(move, end_, space_);
-        if (first_->error != ErrorId::none || first_->empty) say(move.id, first_->error);
+        if (first_->error != ErrorId::none || first_->empty)
+            (void)link_.verdicts.try_push(
+                {life_, move.id, first_->error, false, 0, 0, first_->jog_end, static_cast<std::uint8_t>(first_->jog_place)});
         else if (!place(move, *first_)) return;  // later: no track is free yet
         else end_ = first_->end;
         moves_.pop_front();

@@ -27,7 +27,7 @@ public:
 private:
     struct Run {
         Run(const MoveSpace& space, RunTrack& on, double lead)
-            : curve(space.arm, space.members, space.limits),
+            : curve(space.arm, space.members, space.limits, space.tool_velocity),
               service({curve.axis_limits().begin(), curve.axis_limits().end()}, on.exchange, lead),
               track(on) {}
         RunCurve curve;

@@ -123,7 +123,7 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
         if (const auto track = refuse_track(command); track != ErrorId::none) return track;
         const auto error = refuse_frame(command, config_.kinematics.get(), members_);
         return error != ErrorId::none ? error
-                                      : GroupJog::refuse(command, {command.frame, view_.jogging_dynamics, members_, equipment_.arm});
+                                      : GroupJog::refuse(command, {command.frame, jogging_of(command), members_, equipment_.arm});
     }
     if (goes_a_way(command.kind))
         if (const auto error = refuse_track(command); error != ErrorId::none) return error;
@@ -179,11 +179,12 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
         run_.clear();
         hold_ = members_.set_positions();
     } else {
-        const auto& jogging = view_.jogging_dynamics.path;
         const bool jog = command.kind == GroupCommandKind::jog;
+        const auto jogging = jogging_of(command).path;
         run_.stop(jog ? PathDynamics{0, 0, jogging.deceleration, jogging.jerk} : command.dynamics, factors());
     }
-    if (command.kind == GroupCommandKind::jog) jog_.press(command, jog_lease_of(members_));
+    if (command.kind == GroupCommandKind::jog) jog_.press(command, jog_lease_of(members_), jogging_of(command));
+    view_.jog_end = JogEnd::none;
     const auto id = queue_.next_id();
     queue_.activate({id, owner, command, place});
     fire(GroupEvent::motion);
@@ -313,6 +314,10 @@ void AxisGroup::release_stop(CommandId id) noexcept {
     view_.lock = lock_;
 }
 
+JoggingDynamics AxisGroup::jogging_of(const GroupCommand& command) const noexcept {
+    return command.jog.hand == JogHand::person ? dynamics_by_hand(members_, setup_velocity_of(config_)) : view_.jogging_dynamics;
+}
+
 // --- jogging --------------------------------------------------------------------------------------------------------------------
 
 bool AxisGroup::turn_jog() noexcept {
@@ -343,7 +348,7 @@ void AxisGroup::tend_jog(Duration period) noexcept {
 ErrorId AxisGroup::set_jog(const GroupSetting& setting) noexcept {
     if (const auto* held = std::get_if<HoldJog>(&setting)) {
         if (!jogs() || held->id != queue_.active().id) return ErrorId::unknown_command;
-        const auto error = GroupJog::refuse(*held, {queue_.active().command.frame, view_.jogging_dynamics, members_, equipment_.arm});
+        const auto error = GroupJog::refuse(*held, {queue_.active().command.frame, jog_.dynamics(), members_, equipment_.arm});
         // What cannot be gone is no reason to go on with what was held before.
         jog_.hold(error == ErrorId::none ? *held : HoldJog{.id = held->id});
         return error;

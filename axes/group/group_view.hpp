@@ -10,7 +10,11 @@
 namespace taktwerk::axes {
 
 /// What held the path velocity down.
-enum class PathLimiter : std::uint8_t { none, command, axis, override_factor };
+enum class PathLimiter : std::uint8_t { none, command, axis, override_factor, setup_velocity };
+
+/// Why a jog could not go on, or not begin: the distance that was asked for, a limit of a member, the arm's own (its joints' limits, its reach, rods that
+/// do not meet), a singularity.
+enum class JogEnd : std::uint8_t { none, distance, member_limit, reach, singularity, workspace };
 
 /// Of a group on a frame that moves.
 struct TrackView {
@@ -61,6 +65,10 @@ struct GroupView {
     double path_deviation = 0;  ///< u by which the tool's point is not where it should be; while it moves
     PathLimiter limiter = PathLimiter::none;
     std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
+    double tool_limit = 0;            ///< u/s of the tool's point, in set-up mode; 0: none
+
+    JogEnd jog_end = JogEnd::none;   ///< of the last jog, until something else moves the group
+    std::uint8_t jog_end_place = 0;  ///< JogEnd::member_limit: whose
 
     // of the active command
     GroupCommandKind active_kind = GroupCommandKind::none;

@@ -5,8 +5,13 @@
 namespace taktwerk::axes {
 
 std::string_view name(PathLimiter limiter) noexcept {
-    constexpr std::array<std::string_view, 4> names{"none", "command", "axis_limit", "override_factor"};
+    constexpr std::array<std::string_view, 5> names{"none", "command", "axis_limit", "override_factor", "setup_velocity"};
     return names[static_cast<std::size_t>(limiter)];
+}
+
+std::string_view name(JogEnd end) noexcept {
+    constexpr std::array<std::string_view, 6> names{"none", "distance", "axis_limit", "reach", "singularity", "workspace"};
+    return names[static_cast<std::size_t>(end)];
 }
 
 std::string_view name(GroupCommandKind kind) noexcept {

@@ -10,6 +10,7 @@ namespace taktwerk::axes {
 
 /// "none", "command", "axis_limit", "override_factor": as of an axis' velocity.
 [[nodiscard]] std::string_view name(PathLimiter limiter) noexcept;
+[[nodiscard]] std::string_view name(JogEnd end) noexcept;
 /// The name of its block: "MC_MoveLinearAbsolute"; "none".
 [[nodiscard]] std::string_view name(GroupCommandKind kind) noexcept;
 

@@ -23,10 +23,18 @@ constexpr int most_looks = 8192;
 
 double size_of(double value) noexcept { return std::max(1.0, std::abs(value)); }
 
-MoveShape stands(const MoveEnd& from) {
+/// What keeps a jog from going on.
+struct Hindrance {
+    JogEnd end = JogEnd::none;
+    std::size_t place = 0;
+};
+
+MoveShape stands(const MoveEnd& from, Hindrance why = {}) {
     MoveShape shape;
     shape.empty = true;
     shape.end = from;
+    shape.jog_end = why.end;
+    shape.jog_place = why.place;
     return shape;
 }
 
@@ -58,6 +66,7 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
     MemberVector rate{}, end{};
     double time = longest_time;
     std::size_t first = space.members;  // whose end is the end
+    Hindrance why;
     for (std::size_t k = 0; k < space.members; ++k) {
         const double wanted = std::clamp(move.command.target[k], -1.0, 1.0), q = from.members[k];
         if (wanted == 0) continue;
@@ -66,9 +75,14 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         const bool turning = space.arm != nullptr && k < max_joints && space.arm->rotary()[k];
         const double most = turning ? move.command.jog.angular : move.command.jog.linear;
         end[k] = sense > 0 ? limits.high : limits.low;
-        if (most > 0 && sense * (move.target[k] + sense * most - end[k]) < 0) end[k] = move.target[k] + sense * most;
+        const bool gone = most > 0 && sense * (move.target[k] + sense * most - end[k]) < 0;
+        if (gone) end[k] = move.target[k] + sense * most;
         const double room = sense * (end[k] - q);
-        if (!(room > no_way * size_of(q)) || !arm_lets(k, sense, from.members, space)) continue;
+        const bool at_end = !(room > no_way * size_of(q));
+        if (at_end || !arm_lets(k, sense, from.members, space)) {
+            if (why.end == JogEnd::none || why.end == JogEnd::distance) why = {gone && at_end ? JogEnd::distance : JogEnd::member_limit, k};
+            continue;
+        }
         rate[k] = wanted * limits.velocity;
         if (room / std::abs(rate[k]) > time) continue;
         time = room / std::abs(rate[k]);
@@ -97,6 +111,7 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
     if (const double inside = inside_until(time, from.members, rate, move.place.carried.tool, space); inside < time) {
         first = space.members;
         time = inside;
+        why = {JogEnd::workspace};
     }
     MoveShape shape;
     shape.end.members = at(time);
@@ -110,7 +125,7 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         size = std::max(size, std::abs(a[i]));
     }
     const double length = (b - a).norm();
-    if (!(length > no_way * size)) return stands(from);
+    if (!(length > no_way * size)) return stands(from, why.end == JogEnd::none ? Hindrance{JogEnd::reach} : why);
     if (space.arm != nullptr) shape.end.configuration.branch = space.arm->configuration(joints_of(shape.end.members)).branch;
     shape.element = PathElement::line(a, b);
     shape.members = {from.members};
@@ -179,25 +194,33 @@ public:
         return time_;
     }
     [[nodiscard]] double turned() const noexcept { return turned_; }
+    /// Where it did not reach `most`.
+    [[nodiscard]] const Hindrance& why() const noexcept { return why_; }
 
 private:
     static constexpr double first_step = 1e-3, longest_step = 0.02, least_step = 1e-11;  // s
 
-    bool look(double t, MemberVector& q) const {
+    bool look(double t, MemberVector& q) {
         const Pose pose = pose_of(position_of(start_) + t * rate_.linear, turn_by(t * rate_.angular) * orientation_of(start_));
         const AxisSolution stand = space_.arm->inverse(pose, tool_, from_.configuration, joints_of(near_));
-        if (!stand.ok()) return false;
+        if (stand.miss.fault == KinematicFault::joint_limit)
+            return hindered(JogEnd::member_limit, static_cast<std::size_t>(std::max(stand.miss.joint, 0)));
+        if (!stand.ok()) return hindered(JogEnd::reach);
         q = members_of(stand.axes);
-        if (turn_between(near_, q) > most_turn) return false;
+        if (turn_between(near_, q) > most_turn) return hindered(JogEnd::singularity);  // of any step: the joints would have to jump
         for (std::size_t k = 0; k < space_.members; ++k) {
             // A hair inside, so that the arm's last digits do not lead out.
             const auto& l = space_.limits[k];
             const double high = std::max(l.high - 1e-9 * size_of(l.high), from_.members[k]);
             const double low = std::min(l.low + 1e-9 * size_of(l.low), from_.members[k]);
-            if (q[k] > high || q[k] < low) return false;
+            if (q[k] > high || q[k] < low) return hindered(JogEnd::member_limit, k);
         }
         const double measure = space_.arm->singularity(stand.axes).measure;
-        return measure >= nearest_measure && measure >= std::min(jog_margin, measure_) * (1 - 1e-9);
+        return (measure >= nearest_measure && measure >= std::min(jog_margin, measure_) * (1 - 1e-9)) || hindered(JogEnd::singularity);
+    }
+    bool hindered(JogEnd by, std::size_t place = 0) noexcept {
+        why_ = {by, place};
+        return false;
     }
     void take(double t, const MemberVector& q) {
         turned_ += turn_between(near_, q);
@@ -224,6 +247,7 @@ private:
     MemberVector near_;
     double measure_ = 0;  // the largest so far
     double time_ = 0, turned_ = 0;
+    Hindrance why_;
 };
 
 /// Whether the members stand as the arm would put them there, and not in a singularity.
@@ -255,7 +279,8 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         const double gone = orientation_of(here.pose).angularDistance(orientation_of(pressed.pose));
         most = std::min(most, (reach.angular - gone) / angular);
     }
-    if (!(most > 0) || (linear == 0 && angular == 0)) return stands(from);
+    if (!(most > 0)) return stands(from, {JogEnd::distance});
+    if (linear == 0 && angular == 0) return stands(from);
     if (const auto error = refuse_start(from, space, tool, here.pose); error != ErrorId::none) {
         MoveShape shape;
         shape.error = error;
@@ -263,15 +288,18 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
     }
     PoseWalk walk(from, space, tool, here.pose, rate);
     double time = walk.reach(most);
+    Hindrance why = time < most ? walk.why() : Hindrance{JogEnd::distance};
     if (space.workspace != nullptr) {
         const auto at = [&](double t) {
             const Eigen::Vector3d p = position_of(here.pose) + t * rate.linear;
             return std::array<double, 3>{p.x(), p.y(), p.z()};
         };
-        time = inside_until(*space.workspace, time, at, [&](double) { return linear; });
+        const double inside = inside_until(*space.workspace, time, at, [&](double) { return linear; });
+        if (inside < time) why = {JogEnd::workspace};
+        time = inside;
     }
     const double size = position_of(here.pose).norm();
-    if (!(linear * time > no_way * size_of(size)) && !(angular * time > no_way)) return stands(from);
+    if (!(linear * time > no_way * size_of(size)) && !(angular * time > no_way)) return stands(from, why);
 
     MoveShape shape;
     shape.through_arm = true;

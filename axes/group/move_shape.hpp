@@ -25,6 +25,8 @@ struct MoveShape {
     std::optional<PathFeed> feed;       ///< instead of the command's
     std::vector<MemberVector> members;  ///< along it, at even distances
     MoveEnd end;
+    JogEnd jog_end = JogEnd::none;  ///< of a jog that stands: why
+    std::size_t jog_place = 0;      ///< JogEnd::member_limit: whose, by rank
 };
 
 struct MoveSpace {
@@ -32,6 +34,7 @@ struct MoveSpace {
     const Workspace* workspace = nullptr;  ///< of the tool's point; nullptr: anywhere
     std::size_t members = 0;
     std::array<MemberLimits, max_path_axes> limits{};
+    double tool_velocity = unlimited;  ///< u/s of the tool's point
 };
 
 /// Errors: out_of_reach, singular_path, beyond_software_limit, outside_workspace, invalid_arc, half_turn, no_kinematics.

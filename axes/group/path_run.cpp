@@ -18,7 +18,7 @@ MemberLimits limits_of(const Axis& axis) noexcept {
     const auto& limits = axis.config().limits;
     MemberLimits m;
     // A path turns: what holds in one direction only is kept in both.
-    m.velocity = std::min(limits.velocity_towards(1), limits.velocity_towards(-1));
+    m.velocity = std::min({limits.velocity_towards(1), limits.velocity_towards(-1), axis.velocity_of_mode()});
     m.acceleration = std::min(
         {limits.acceleration_towards(1), limits.acceleration_towards(-1), limits.deceleration_towards(1), limits.deceleration_towards(-1)});
     // Without a limit: an acceleration builds up within a few milliseconds.
@@ -78,6 +78,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
         in.places[count++] = static_cast<std::uint8_t>(i);
     }
     order.members = static_cast<std::uint8_t>(count);
+    order.tool_velocity = in.tool_velocity;
     if (!in.link.orders.try_push(order)) return false;
     clear();
     ++in.life;
@@ -85,6 +86,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     in.link.at_run.store(GroupLink::both(in.life, 0), std::memory_order_release);
     in.members = count;
     in.limits = order.limits;
+    in.tool_planned = order.tool_velocity;
     in.q = order.from;
     in.wish = order;
     in.told = true;
@@ -92,8 +94,11 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     return true;
 }
 
+void PathRun::keep_tool_below(double velocity) noexcept { inside_->tool_velocity = velocity; }
+
 bool PathRun::fits(const GroupMembers& members) const noexcept {
     const auto& in = *inside_;
+    if (in.tool_velocity < in.tool_planned) return false;
     for (std::size_t k = 0; k < in.members; ++k) {
         if (!members.has(in.places[k])) return false;
         const MemberLimits now = limits_of(members.axis(in.places[k])), &then = in.limits[k];
@@ -125,6 +130,13 @@ std::optional<PathPlace> PathRun::verdict(CommandId id) const noexcept {
     for (const auto& v : inside_->verdicts)
         if (v.id == id && v.life == inside_->life && !v.standing) return PathPlace{.error = v.error, .line = v.line};
     return std::nullopt;
+}
+
+std::pair<JogEnd, std::uint8_t> PathRun::jog_end(CommandId id) const noexcept {
+    const auto& in = *inside_;
+    for (const auto& v : in.verdicts)
+        if (v.id == id && v.life == in.life && v.jog_end != JogEnd::none) return {v.jog_end, in.places[v.jog_place]};
+    return {};
 }
 
 void PathRun::override_with(const Override& factors) noexcept {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "axes/group/group_config.hpp"
 #include "axes/group/group_equipment.hpp"
@@ -39,6 +40,8 @@ public:
     /// `caps`: the members keep below these too, where they are above 0. `from`: not there, but where a frame that moves had them when its path was planned.
     bool restart(const GroupMembers& members, const Override& factors, const JoggingDynamics* caps = nullptr,
                  const JointVector* from = nullptr) noexcept;
+    /// From the next restart on: u/s of the tool's point that nothing goes faster.
+    void keep_tool_below(double velocity) noexcept;
     /// What was planned is inside the limits that the members have now.
     [[nodiscard]] bool fits(const GroupMembers& members) const noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
@@ -48,6 +51,8 @@ public:
               const JointVector* pressed = nullptr) noexcept;
     /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
     [[nodiscard]] std::optional<PathPlace> verdict(CommandId id) const noexcept;
+    /// Of a jog that had nothing to go: why, and of a member's limit whose place it is.
+    [[nodiscard]] std::pair<JogEnd, std::uint8_t> jog_end(CommandId id) const noexcept;
     /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
     [[nodiscard]] bool begin(CommandId id) noexcept;
     // Of a path that an axis drives (driven_run.cpp):

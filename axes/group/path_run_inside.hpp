@@ -43,6 +43,7 @@ struct PathRun::Inside {
     std::uint32_t driven_part = 0;  // of the track, where an axis drives it
     std::array<std::uint8_t, max_path_axes> places{};
     std::array<MemberLimits, max_path_axes> limits{};
+    double tool_velocity = unlimited, tool_planned = unlimited;  // that is to hold; that the runs of this life keep
     std::size_t members = 0;
     MemberVector q{}, velocity{}, acceleration{}, before{};  // before: the acceleration of the cycle before
     double period = 1;

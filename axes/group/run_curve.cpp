@@ -11,11 +11,22 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Set-points may use so much of a jerk limit: a plan holds jerk to 2e-4, and an axis takes no more than its limit.
 constexpr double jerk_share = 1 - 5e-4;
 
+// The tool's point in set-up mode. Through the arm its rate is that of the path itself, in closed form. On a line of the axes it is |J(q) q'|, which is
+// looked at where time is planned: in twelfths of a cell, with the peak of a parabola through each three of them (cell_check.cpp). What it may be
+// between: with w = the sum of the joints' turns per length, each component of J q' is a sum of sines of the joints' angles, so that its second
+// derivative by s is at most w^2 times R = sum of lever x rate, its third w^3 R. A cell of an own line is no longer than `most_cell_turn` / w (`feature`),
+// at most 2.7 times that in a run of many spans: samples are 0.2 x 2.7 / 12 = 0.045 rad apart, and a parabola misses (0.045)^3 / 15.6 = 6e-6 of R.
+// The reserve is 1e-3 of the limit: enough as long as R is no more than 160 times the rate itself, and where it is more (joints that turn against each
+// other until the point nearly stands) the rate is so small that other limits hold.
+constexpr double tool_share = 1 - 1e-3;
+constexpr double most_cell_turn = 0.2;  // rad
+
 double said(double value) noexcept { return value > 0 ? value : infinite; }
 
 }  // namespace
 
-RunCurve::RunCurve(const Kinematics* arm, std::size_t members, std::span<const MemberLimits> limits) : arm_(arm) {
+RunCurve::RunCurve(const Kinematics* arm, std::size_t members, std::span<const MemberLimits> limits, double tool_velocity)
+    : arm_(arm), tool_velocity_(arm != nullptr && members >= arm->joint_count() ? tool_share * tool_velocity : unlimited) {
     for (std::size_t i = 0; i < members; ++i) limits_.push_back({limits[i].velocity, limits[i].acceleration, jerk_share * limits[i].jerk});
 }
 
@@ -53,6 +64,12 @@ WayPoint RunCurve::place(std::size_t i, double s) const noexcept {
     return way_point(path.sections()[i], run, s, arm_, limits_.size(), run.through_arm ? near(i, s) : MemberVector{});
 }
 
+double RunCurve::tool_rate(std::size_t i, double s, const WayPoint& at) const noexcept {
+    if (seen[i].run.through_arm) return path.sections()[i].at(s).first.head<3>().norm();
+    const auto moving = arm_->moving(joints_of(at.q), joints_of(at.first), seen[i].run.carried.tool);
+    return std::hypot(moving.velocity[0], moving.velocity[1], moving.velocity[2]);
+}
+
 TimedCurvePoint RunCurve::on(std::size_t i, double s) const noexcept {
     const PathSection& section = path.sections()[i];
     const WayPoint w = place(i, s);
@@ -72,6 +89,10 @@ TimedCurvePoint RunCurve::on(std::size_t i, double s) const noexcept {
     const double least = std::min(axes.acceleration, axes.deceleration);
     PathLimits& path_limits = p.path;
     path_limits.velocity = std::min(said(velocity) * share, axes.velocity);
+    if (tool_limited()) {
+        const double rate = tool_rate(i, s, w);
+        if (rate * path_limits.velocity > tool_velocity_) path_limits.velocity = tool_velocity_ / rate;
+    }
     const double faster = std::min(said(section.feed.acceleration) * share, least);
     path_limits.acceleration = faster * factors_.acceleration;
     path_limits.deceleration =
@@ -104,7 +125,14 @@ double RunCurve::feature(double s, CurveSide side) const noexcept {
     const std::size_t i = index(s, side);
     const PathSection& section = path.sections()[i];
     const double own = section.element.feature(section.from + s - section.begin);
-    if (!seen[i].run.through_arm) return own;
+    if (!seen[i].run.through_arm) {
+        if (!tool_limited()) return own;
+        const WayPoint w = place(i, s);
+        double turns = 0;
+        for (std::size_t k = 0; k < arm_->joint_count(); ++k)
+            if (arm_->rotary()[k]) turns += std::abs(w.first[k] * arm_->map().settings(k).unit);
+        return turns > 0 ? std::min(own, most_cell_turn / turns) : own;
+    }
     // By how much q' changes, weighed by what each member can do.
     const WayPoint w = place(i, s);
     double first = 0, second = 0, third = 0;

@@ -12,7 +12,8 @@ namespace taktwerk::axes {
 
 class RunCurve final : public TimedCurve {
 public:
-    RunCurve(const Kinematics* arm, std::size_t members, std::span<const MemberLimits> limits);
+    /// `tool_velocity`: u/s of the tool's point that no place of the path is passed faster with; it takes an arm that has a point.
+    RunCurve(const Kinematics* arm, std::size_t members, std::span<const MemberLimits> limits, double tool_velocity = unlimited);
 
     /// What the planner keeps of a section beside the path's own.
     struct Seen {
@@ -52,7 +53,12 @@ private:
     [[nodiscard]] const MemberVector& near(std::size_t index, double s) const noexcept;
     [[nodiscard]] TimedCurvePoint on(std::size_t index, double s) const noexcept;
 
+    /// By how much the tool's point moves per length of the path.
+    [[nodiscard]] double tool_rate(std::size_t index, double s, const WayPoint& at) const noexcept;
+    [[nodiscard]] bool tool_limited() const noexcept { return tool_velocity_ < unlimited; }
+
     const Kinematics* arm_;
+    double tool_velocity_;
     std::vector<PathAxisLimits> limits_;
     bool ramps_ = false;  // by ramp_, not by the command
     Override factors_{};

@@ -115,6 +115,18 @@ std::string key_of(const axes::ArmDescription& arm, const Error& why) {
     return why.subject.compare(0, kind.size() + 1, kind + ".") == 0 ? key + why.subject.substr(kind.size()) : key;
 }
 
+void check_setup_velocity(Reader& reader, const Node& node, const GroupEntry& entry) {
+    const auto* written = node.find("setup_velocity");
+    if (written == nullptr) return;
+    const auto most = parse_quantity("250 mm/s", Dimension::velocity, entry.unit);
+    const double velocity = entry.group.setup_velocity;
+    if (most.problem != QuantityProblem::none || (velocity > 0 && velocity <= most.value * (1 + 1e-12))) return;
+    reader.problem(written->at, "group.setup_velocity",
+                   "`setup_velocity` of group " + entry.group.name + " is " + show_number(velocity) + " " + entry.unit +
+                       "/s; in set-up mode the tool's " + "point goes above 0 and at most 250 mm/s (reduced speed, ISO 10218-1)",
+                   "write " + show_number(most.value) + " " + entry.unit + "/s or less, or leave it out: then that holds");
+}
+
 }  // namespace
 
 Table<GroupEntry> group_table() {
@@ -140,6 +152,12 @@ Table<GroupEntry> group_table() {
             field_at<G>("deceleration", dynamics(&PathDynamics::deceleration), quantity(Dimension::acceleration, 0), "along the path"),
             field_at<G>("jerk", dynamics(&PathDynamics::jerk), quantity(Dimension::jerk, 0), "along the path"),
         }));
+    f.push_back(
+        with_default(field_at<G>(
+                         "setup_velocity", [](G & g) -> auto& { return g.group.setup_velocity; }, quantity(Dimension::velocity),
+                         "of the tool's point in set-up mode, whoever moves it, at most 250 mm/s (reduced speed, ISO 10218-1); so fast a "
+                         "person jogs it, in manual mode too. No safety function"),
+                     "250 mm/s"));
     auto arm = section(arm_table());
     const auto read = arm.read;
     arm.read = [read](Reader& reader, const Node& node, ArmEntry& entry) {
@@ -159,7 +177,10 @@ Table<GroupEntry> group_table() {
         reader.axis_unit = unit != nullptr && std::find(known.begin(), known.end(), unit->text) != known.end() ? unit->text : g.unit;
         check_names(reader, node, g.group.name);
     };
-    table.after = [](Reader& reader, const Node& node, G& g) { equip(reader, node, g); };
+    table.after = [](Reader& reader, const Node& node, G& g) {
+        equip(reader, node, g);
+        check_setup_velocity(reader, node, g);
+    };
     return table;
 }
 

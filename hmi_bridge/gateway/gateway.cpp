@@ -29,9 +29,13 @@ std::string with_unit(double value, std::string_view unit) { return fmt::format(
 Error bad_value(std::string what, std::string remedy) { return {"command.bad_value", "", std::move(what), std::move(remedy)}; }
 
 /// Lives by renewals.
-bool is_held(CommandKind kind) noexcept { return kind == CommandKind::jog || kind == CommandKind::measure; }
+bool is_held(CommandKind kind) noexcept {
+    return kind == CommandKind::jog || kind == CommandKind::group_jog || kind == CommandKind::measure;
+}
 
-bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
+bool lets_go(const CommandRequest& request) noexcept {
+    return (request.kind == CommandKind::jog || request.kind == CommandKind::group_jog) && request.value == 0;
+}
 /// Of a button, or a switch that is put off: never too late either, but in its turn.
 bool puts_off(const CommandRequest& request) noexcept { return request.kind == CommandKind::set_value && request.value == 0; }
 
@@ -75,6 +79,13 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
             if (request.press && request.value == 0)
                 return bad_value("a jog is pressed with velocity 0", "Give a velocity; 0 is for letting go.");
             return check_jog_velocity(layout.axes[command.axis], request.value);
+        case CommandKind::group_jog:
+            if (request.press && request.value == 0)
+                return bad_value("a jog is pressed with velocity 0", "Give a velocity; 0 is for letting go.");
+            if (request.value < 0 || request.value > 1)
+                return bad_value(fmt::format("{:g} is no part of the jogging velocity", request.value),
+                                 "Give a part above 0 and up to 1; the sense stands in `direction`.");
+            return std::nullopt;
         case CommandKind::move:
             if (request.value2 <= 0)
                 return bad_value("a move to a position needs a velocity above 0",
@@ -112,7 +123,7 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
 bool CommandRequest::same_as(const CommandRequest& other) const noexcept {
     return kind == other.kind && target == other.target && output == other.output && press == other.press &&
            commissioning == other.commissioning && mode == other.mode && same(value, other.value) && same(value2, other.value2) &&
-           measure == other.measure;
+           measure == other.measure && group_jog == other.group_jog;
 }
 
 TargetKind target_kind(const CommandWord& word, const CommandRequest& request) noexcept {
@@ -179,18 +190,22 @@ Duration Gateway::validity_of(const CommandRequest& request) const {
 std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request, const OperatorCommand& command, Instant now) const {
     const bool moves = request.kind == CommandKind::move || request.kind == CommandKind::home;
     if (!moves && (!is_held(request.kind) || lets_go(request))) return std::nullopt;
-    const auto found = jogs_.find(command.axis);
-    const bool mine = found != jogs_.end() && found->second.client == request.client;
-    const bool alive = found != jogs_.end() && now - found->second.renewed <= jog_session;
-    if (alive && !mine) {
+    bool holds = true;  // all of it
+    for (const auto axis : axes_of(request)) {
+        const auto found = jogs_.find(axis);
+        const bool mine = found != jogs_.end() && found->second.client == request.client;
+        const bool alive = found != jogs_.end() && now - found->second.renewed <= jog_session;
+        holds = holds && mine && alive;
+        if (!alive || mine) continue;
         const auto other = clients_.find(found->second.client);
+        const auto which = command.axis < machine_.layout().axes.size() ? std::string("this axis") : "axis " + machine_.layout().axes[axis].name;
         return Refusal{
             Answer::no_control,
             {"command.no_control", "",
-             fmt::format("{} is jogging or measuring this axis", other == clients_.end() ? "another client" : other->second.name),
+             fmt::format("{} is jogging or measuring {}", other == clients_.end() ? "another client" : other->second.name, which),
              "Wait until it lets go."}};
     }
-    if (!moves && !request.press && !(mine && alive)) {
+    if (!moves && !request.press && !holds) {
         runtime::CommandAnswer stale;
         stale.answer = Answer::stale;
         return Refusal{Answer::stale, explain(stale, request.kind, "", {})};
@@ -222,7 +237,7 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                         "Use the command line on this computer."}};
     if (request.commissioning) command.owner = axes::Owner::commissioning;
     if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output ||
-                                         request.kind == CommandKind::measure || of_a_point))
+                                         request.kind == CommandKind::measure || request.kind == CommandKind::group_jog || of_a_point))
         return Refusal{
             Answer::no_control,
             {"command.no_control", "", fmt::format("{} is not taken over LCM, where nobody knows who asks and who is gone", word->word),
@@ -244,6 +259,12 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
         if (auto error = check_values(*word, request, command, machine_.layout()))
             refusal =
                 Refusal{error->code == code(Answer::not_possible_now) ? Answer::not_possible_now : Answer::bad_value, std::move(*error)};
+    if (request.kind == CommandKind::group_jog && !lets_go(request) && !refusal) {
+        const auto order = read_group_jog(request.group_jog, machine_.layout(), command.index);
+        if (order) command.group_jog = *order;
+        else refusal = Refusal{order.error().code == code(Answer::not_possible_now) ? Answer::not_possible_now : Answer::bad_value, order.error()};
+        command.value2 = request.group_jog.distance;
+    }
     if (!refusal) refusal = check_jog(request, command, now);
     if (const auto stuck = machine_.stuck(); !refusal && !lets_go(request) && stuck)
         refusal = Refusal{Answer::not_possible_now,
@@ -343,16 +364,26 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
     client.wrote_values = client.wrote_values || (request.kind == CommandKind::set_value && request.press);
     client.forces = client.forces || request.kind == CommandKind::force;
-    if (is_held(request.kind)) jogs_[command.axis] = {request.client, now};
+    if (!is_held(request.kind)) return;
+    for (const auto axis : axes_of(request)) jogs_[axis] = {request.client, now};
+}
+
+std::vector<std::uint16_t> Gateway::axes_of(const CommandRequest& request) const {
+    const auto& layout = machine_.layout();
+    const bool of_a_group = request.kind == CommandKind::group_jog;
+    const auto target = find_target(layout, of_a_group ? TargetKind::group : TargetKind::axis, request.target);
+    if (!target) return {};
+    if (of_a_group) return layout.groups[*target].members;
+    return {*target};
 }
 
 void Gateway::let_go(const CommandRequest& request) {
-    const auto axis = find_target(machine_.layout(), TargetKind::axis, request.target);
-    if (!axis) return;
-    const auto jog = jogs_.find(*axis);
-    if (jog == jogs_.end() || jog->second.client != request.client) return;
-    if (!request.arrival.level_raised) machine_.release_jog(*axis);
-    jogs_.erase(jog);
+    for (const auto axis : axes_of(request)) {
+        const auto jog = jogs_.find(axis);
+        if (jog == jogs_.end() || jog->second.client != request.client) continue;
+        if (!request.arrival.level_raised) machine_.release_jog(axis);
+        jogs_.erase(jog);
+    }
 }
 
 // A level for each of its axes, as they are configured. The cycle takes them by their number: when the first axis' has been taken, which was raised
@@ -400,10 +431,10 @@ void Gateway::settle_levels(Instant now) {
 
 void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
     if (!is_held(entry.request.kind) || answer == Answer::accepted) return;
-    const auto axis = find_target(machine_.layout(), TargetKind::axis, entry.request.target);
-    if (!axis) return;
-    const auto jog = jogs_.find(*axis);
-    if (jog != jogs_.end() && jog->second.client == entry.request.client) jogs_.erase(jog);
+    for (const auto axis : axes_of(entry.request)) {
+        const auto jog = jogs_.find(axis);
+        if (jog != jogs_.end() && jog->second.client == entry.request.client) jogs_.erase(jog);
+    }
 }
 
 void Gateway::step(Instant now) {

@@ -10,7 +10,7 @@
 // Stop, shutdown and a jog let go are levels of the machine: no age, no queue and no sequence refuses them (machine_link.hpp).
 //
 // Other rules: a client's sequence increases; the same command with a sequence of its last 16 is answered again, not executed again.
-// One client jogs an axis at a time, and while it does nobody else moves or homes that axis. A client that closes while jogging stops its
+// One client jogs an axis at a time, and while it does nobody else moves or homes that axis; who jogs a group jogs all of its axes. A client that closes while jogging stops its
 // axis, whatever moves it; one that just vanishes stops it by letting the lease run out in the cycle; outputs that it has set become safe, points
 // that it has forced are their own again. What
 // clients do is told to the log by who they are. Over LCM nobody is known and nobody is missed: nothing that ends the run, or that would stand
@@ -30,6 +30,7 @@
 #include "core/time.hpp"
 #include "hmi_bridge/command_words.hpp"
 #include "hmi_bridge/gateway/deed_log.hpp"
+#include "hmi_bridge/gateway/group_jog_request.hpp"
 #include "hmi_bridge/gateway/hands.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/machine_link.hpp"
@@ -49,12 +50,13 @@ struct CommandRequest {
     std::uint64_t sequence = 0;  ///< >= 1
     CommandKind kind = CommandKind::none;
     std::string target;          ///< name; "all" (or empty for stop and reset) where the table allows it
-    bool press = false;          ///< jog, measure: the first one; renewals have false
+    bool press = false;          ///< jog, group_jog, measure: the first one; renewals have false
     bool output = false;         ///< force, unforce: `target` is an output, not an input
     bool commissioning = false;  ///< commands in the name of commissioning instead of the operator panel
     runtime::Mode mode = runtime::Mode::manual;
     double value = 0, value2 = 0;
     axes::MeasureOrder measure;                    ///< of a measure
+    GroupJogRequest group_jog;                     ///< of a group_jog
     Duration valid_for = std::chrono::seconds{1};  ///< 1 ms .. 10 s; jog: up to 500 ms
     Duration age{};                                ///< since the client gave it, by the common wall clock; negative: the clocks disagree
     Arrival arrival;                               ///< how it came here; Arrival::at the epoch: just now
@@ -151,6 +153,8 @@ private:
     void wait_for(const Client& client, const CommandRequest& request, runtime::StopLevels::Ticket ticket, Instant now);
     void settle_levels(Instant now);
     void let_go(const CommandRequest& request);
+    /// What a request that is held, or that moves, holds: its axis, or all axes of its group as they are configured.
+    [[nodiscard]] std::vector<std::uint16_t> axes_of(const CommandRequest& request) const;
 
     MachineLink& machine_;
     bool cycling_ = false;
@@ -169,6 +173,7 @@ private:
     DeedLog deeds_;
     Hands hands_;
     std::map<std::uint16_t, ClientId> told_jogs_;   ///< axes whose jog was told to begin, and of whom
+    std::map<std::uint16_t, ClientId> told_group_jogs_;  ///< likewise of groups
     std::deque<runtime::OperatorCommand> endings_;  ///< what ends with clients that are gone; the inbox has not taken it yet
     Instant now_{};
 };

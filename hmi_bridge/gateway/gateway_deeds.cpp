@@ -39,6 +39,11 @@ std::string Gateway::deed(const CommandRequest& request) const {
         text += request.value == 0 ? ": let go" : fmt::format(" at {:g} {}/s", request.value, layout.axes[*axis].unit);
     if (request.kind == CommandKind::move && axis)
         text += fmt::format(" to {:g} {} at {:g} {}/s", request.value, layout.axes[*axis].unit, request.value2, layout.axes[*axis].unit);
+    if (request.kind == CommandKind::group_jog) {
+        const auto& jog = request.group_jog;
+        text += request.value == 0 ? ": let go" : fmt::format(" {} in {} at {:g} %", jog.direction, jog.frame, 100 * request.value);
+        if (request.value != 0 && jog.distance > 0) text += fmt::format(", by {:g}", jog.distance);
+    }
     if (request.kind == CommandKind::measure) text += fmt::format(": {}", name(request.measure.kind));
     if (request.kind == CommandKind::mode) text += fmt::format(" {}", hmi::word(request.mode));
     if (request.kind == CommandKind::override_velocity || request.kind == CommandKind::group_override)
@@ -78,6 +83,15 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
         if (request.value != 0 && !request.press) return;
         if (request.value != 0) told_jogs_[*axis] = id;
     }
+    if (request.kind == CommandKind::group_jog) {
+        const auto group = find_target(layout, TargetKind::group, request.target);
+        if (group && request.value == 0 && told_group_jogs_.erase(*group) == 0) return;
+        if (request.value != 0 && !request.press) return;
+        if (group && request.value != 0) {
+            told_group_jogs_[*group] = id;
+            for (const auto member : layout.groups[*group].members) hands_.lay(member, id, client.name);
+        }
+    }
     if (request.kind == CommandKind::measure && !request.press) return;
     deeds_.say(client.name, deed(request), now);
 }
@@ -85,7 +99,8 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
 /// The client goes: what it has asked for last, and what ends with it.
 void Gateway::note_end(ClientId id, const Client& client) {
     for (const auto& entry : client.entries)
-        if (entry.state == Entry::State::waiting && entry.request.kind != CommandKind::jog && entry.request.kind != CommandKind::measure)
+        if (entry.state == Entry::State::waiting && entry.request.kind != CommandKind::jog && entry.request.kind != CommandKind::group_jog &&
+            entry.request.kind != CommandKind::measure)
             deeds_.say(client.name, deed(entry.request) + "; it was gone before the answer", now_);
     for (auto jog = told_jogs_.begin(); jog != told_jogs_.end();) {
         if (jog->second != id) {
@@ -95,6 +110,14 @@ void Gateway::note_end(ClientId id, const Client& client) {
         deeds_.say(client.name, fmt::format("is gone while it jogs axis {}: the axis stops", machine_.layout().axes[jog->first].name),
                    now_);
         jog = told_jogs_.erase(jog);
+    }
+    for (auto jog = told_group_jogs_.begin(); jog != told_group_jogs_.end();) {
+        if (jog->second != id) {
+            ++jog;
+            continue;
+        }
+        deeds_.say(client.name, fmt::format("is gone while it jogs group {}: it stops", machine_.layout().groups[jog->first].name), now_);
+        jog = told_group_jogs_.erase(jog);
     }
     const auto end = [&](OperatorAction what) {
         OperatorCommand command;

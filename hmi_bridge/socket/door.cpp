@@ -86,15 +86,20 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
         else pending_.push_back({connection, urgent->id, urgent->kind, ticket, now_});
         return;
     }
-    if (urgent && urgent->kind == Kind::jog_release) arrival.level_raised = let_go(connection, urgent->axis);
+    if (urgent && urgent->kind == Kind::jog_release) {
+        arrival.level_raised = !urgent->held.empty();
+        for (const auto axis : urgent->held) arrival.level_raised = let_go(connection, axis) && arrival.level_raised;
+    }
     arrival.at = read_at_;
     arrival.after = machine_.levels_raised();
     if (urgent && urgent->kind == Kind::jog_hold) {
-        for (auto hold = holds_.lower_bound(urgent->axis); hold != holds_.end() && hold->first == urgent->axis; ++hold)
-            if (hold->second.connection == connection) hold->second.renewed = now_;
-        if (urgent->press && !guests_[connection].in_reserve) {
-            std::erase_if(holds_, [&](const auto& h) { return h.first == urgent->axis && h.second.connection == connection; });
-            holds_.insert({urgent->axis, {connection, urgent->id, now_}});
+        for (const auto axis : urgent->held) {
+            for (auto hold = holds_.lower_bound(axis); hold != holds_.end() && hold->first == axis; ++hold)
+                if (hold->second.connection == connection) hold->second.renewed = now_;
+            if (urgent->press && !guests_[connection].in_reserve) {
+                std::erase_if(holds_, [&](const auto& h) { return h.first == axis && h.second.connection == connection; });
+                holds_.insert({axis, {connection, urgent->id, now_}});
+            }
         }
     }
     hand_on(connection, line, arrival);

@@ -61,7 +61,7 @@ std::string layout_json(const runtime::MachineLayout& layout) {
         Json members = Json::array();
         for (const auto member : group.members) members.push_back(layout.axes[member].name);
         groups.push_back(Json{
-            {"name", group.name}, {"unit", group.unit}, {"members", std::move(members)}, {"arm", group.arm}, {"commands", group.commands}});
+            {"name", group.name}, {"unit", group.unit}, {"members", std::move(members)}, {"arm", group.arm}, {"commands", group.commands}, {"setup_velocity", group.setup_velocity}});
     }
     out["slaves"] = layout.slaves;
     out["inputs"] = layout.inputs;

@@ -132,6 +132,14 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
         request.press = fields.flag("press");
         request.valid_for = std::chrono::milliseconds{250};
     }
+    if (entry.kind == CommandKind::group_jog) {
+        request.press = fields.flag("press");
+        request.valid_for = std::chrono::milliseconds{250};
+        const bool needed = request.value != 0;  // who lets go need not say of what
+        request.group_jog.direction = fields.text("direction", needed);
+        if (auto frame = fields.text("frame", false); !frame.empty()) request.group_jog.frame = std::move(frame);
+        request.group_jog.distance = fields.number("distance", false);
+    }
     if (entry.kind == CommandKind::measure) {
         request.press = fields.flag("press");
         request.valid_for = std::chrono::milliseconds{250};

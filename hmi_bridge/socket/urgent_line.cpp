@@ -32,7 +32,7 @@ bool asks_for(std::string_view line, std::string_view command) {
 /// Cheap: most lines are none of these. Behind a backslash any word may stand, letter by letter.
 bool may_be(std::string_view line) {
     if (line.size() > longest_line) return asks_for(line, "\"stop\"") || asks_for(line, "\"shutdown\"");
-    for (const std::string_view word : {"\"stop\"", "\"shutdown\"", "\"jog\"", "\"measure\"", "\\"})
+    for (const std::string_view word : {"\"stop\"", "\"shutdown\"", "\"jog\"", "\"group_jog\"", "\"measure\"", "\\"})
         if (line.find(word) != std::string_view::npos) return true;
     return false;
 }
@@ -46,6 +46,14 @@ std::optional<std::uint16_t> axis_of(const nlohmann::json& line, const runtime::
     for (std::size_t i = 0; i < layout.axes.size(); ++i)
         if (layout.axes[i].name == name) return static_cast<std::uint16_t>(i);
     return std::nullopt;
+}
+
+const std::vector<std::uint16_t>* members_of(const nlohmann::json& line, const runtime::MachineLayout& layout) {
+    const auto found = line.find("group");
+    if (found == line.end() || !found->is_string()) return nullptr;
+    for (const auto& group : layout.groups)
+        if (group.name == found->get_ref<const std::string&>()) return &group.members;
+    return nullptr;
 }
 
 }  // namespace
@@ -86,12 +94,20 @@ std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::Mach
     }
     const bool stop = *cmd == "stop";
     const bool measures = *cmd == "measure";
-    if (!stop && !measures && *cmd != "jog") return std::nullopt;
-    const auto axis = axis_of(json, layout, stop);
-    urgent.unclear_axis = stop && !axis;
-    if (!axis && !stop) return std::nullopt;
-    urgent.axis = axis.value_or(all_axes);
-    if (stop) return urgent;
+    const bool of_a_group = *cmd == "group_jog";
+    if (!stop && !measures && !of_a_group && *cmd != "jog") return std::nullopt;
+    if (of_a_group) {
+        const auto* members = members_of(json, layout);
+        if (members == nullptr) return std::nullopt;
+        urgent.held = *members;
+    } else {
+        const auto axis = axis_of(json, layout, stop);
+        urgent.unclear_axis = stop && !axis;
+        if (!axis && !stop) return std::nullopt;
+        urgent.axis = axis.value_or(all_axes);
+        if (stop) return urgent;
+        urgent.held = {urgent.axis};
+    }
     const auto velocity = json.find("velocity");
     if (!measures && (velocity == json.end() || !velocity->is_number())) return std::nullopt;
     // A measurement is let go by a stop; its velocity 0 is a number left open.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runtime/snapshot.hpp"
 
@@ -22,6 +23,7 @@ struct UrgentLine {
     std::string id = "null";  ///< as the answer repeats it
     /// The axis of a stop is none of this machine's, or no name: it stops every axis, and is refused all the same.
     bool unclear_axis = false;
+    std::vector<std::uint16_t> held{};  ///< of a press, a renewal, a release: its axis, or those of its group as configured
 };
 
 /// A stop is a stop, however odd the rest of its line: no age, no missing id, no unknown key, no length holds it up, nor that something beside

@@ -76,7 +76,7 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
 
 bool PageMessage::may_move() const {
     if (rule == nullptr || !rule->moves) return false;
-    const char* key = rule->command == "jog" ? "velocity" : rule->command == "set_value" ? "value" : nullptr;
+    const char* key = rule->command == "jog" || rule->command == "group_jog" ? "velocity" : rule->command == "set_value" ? "value" : nullptr;
     if (key == nullptr) return true;
     const auto given = request.find(key);
     return given == request.end() || !given->is_number() || given->get<double>() != 0;
@@ -88,6 +88,14 @@ bool PageMessage::is_renewal() const {
     if (!is_held() || !may_move()) return false;
     const auto press = request.find("press");
     return press == request.end() || *press == false;
+}
+
+nlohmann::ordered_json PageMessage::release() const {
+    const bool of_a_group = rule->command == "group_jog";
+    const char* key = of_a_group ? "group" : "axis";
+    const auto given = request.find(key);
+    if (given == request.end() || !given->is_string()) return {};
+    return {{"cmd", of_a_group ? "group_jog" : "jog"}, {key, *given}, {"velocity", 0}};
 }
 
 std::string PageMessage::variable() const {

@@ -29,10 +29,12 @@ struct PageMessage {
 
     /// A renewal, a press, or (false) a jog let go and everything that moves nothing.
     [[nodiscard]] bool may_move() const;
-    [[nodiscard]] bool is_jog() const { return rule != nullptr && (rule->command == "jog" || rule->command == "measure"); }
+    [[nodiscard]] bool is_jog() const { return rule != nullptr && (rule->command == "jog" || rule->command == "group_jog" || rule->command == "measure"); }
     /// A jog, a measurement, or a button by `set_value` with `press`: true, and false with each renewal.
     [[nodiscard]] bool is_held() const;
     [[nodiscard]] bool is_renewal() const;
+    /// Of a jog or a measurement: the command that lets go of it, without its time; null where it names neither axis nor group.
+    [[nodiscard]] nlohmann::ordered_json release() const;
     [[nodiscard]] std::string variable() const;  ///< of a set_value; empty where it is no text
 };
 

@@ -60,6 +60,7 @@ inline constexpr std::array command_rules{
     CommandRule{"group_reset", Role::operates, true},
     CommandRule{"group_enable", Role::operates, true},
     CommandRule{"group_disable", Role::operates, true},
+    CommandRule{"group_jog", Role::operates, true},
     CommandRule{"reset_peaks", Role::operates, true},
     CommandRule{"force", Role::engineer, true},
     CommandRule{"unforce", Role::engineer, true},

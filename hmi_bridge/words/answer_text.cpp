@@ -60,6 +60,16 @@ constexpr OperatorWords group_words[] = {
     {axes::ErrorId::no_members, "it has no axes", "Its program, or `members` of {} in the file, gives it some."},
     {axes::ErrorId::state_forbids, "it is stopping, or interrupted already",
      "Wait until it stands; `taktwerk monitor` shows what {} does."},
+    {axes::ErrorId::beyond_software_limit, "it went as far as its axes may, or an axis of it stands outside its software limits",
+     "Jog {} the other way; an axis outside its limits alone: `taktwerk jog AXIS`."},
+    {axes::ErrorId::out_of_reach, "it went as far as its arm reaches in this direction", "Jog {} another way, or its axes (`--frame acs`)."},
+    {axes::ErrorId::singular_path, "its arm comes too near to a singularity in this direction: its axes would have to turn much faster than its tool moves",
+     "Jog the axes of {} (`--frame acs`), which always leads out."},
+    {axes::ErrorId::no_kinematics, "it has no arm whose tool could be moved", "Jog the axes of {}: `--frame acs`."},
+    {axes::ErrorId::interlocked, "an emergency stop holds, or an axis of it may not move in this direction",
+     "Release the emergency stop, reset {}; `taktwerk monitor` shows the limit switches of its axes."},
+    {axes::ErrorId::not_at_standstill, "an axis of it moves by itself", "Stop it first: `taktwerk group halt {}`."},
+    {axes::ErrorId::aborted_by_command, "somebody or something else has stopped it", "Let go and press again."},
 };
 
 bool is_of_a_group(CommandKind kind) noexcept {
@@ -142,7 +152,7 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             if (kind == CommandKind::measure) {
                 error.what = "the measurement is over: it was let go or stopped, or its lease ran out before the renewal came";
                 error.remedy = "Ask for its result (measure_result), which says how it ended; press again to begin anew.";
-            } else if (kind == CommandKind::jog) {
+            } else if (kind == CommandKind::jog || kind == CommandKind::group_jog) {
                 error.what = "the jog is over: it was let go, or its lease ran out before the renewal came (then there is an alarm)";
                 error.remedy = "Let go and press again; if its lease runs out again, the connection or this computer is too slow.";
             } else if (kind == CommandKind::set_value) {

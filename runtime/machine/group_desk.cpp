@@ -28,7 +28,7 @@ float part(double value, double limit) noexcept {
 }  // namespace
 
 GroupDesk::GroupDesk(MachineBody& body, HandMotion& hands)
-    : body_(body), hands_(hands), seen_(body.axis_groups.size()), held_(body.axis_groups.size()), accelerations_(body.axis_groups.size()) {}
+    : body_(body), hands_(hands), hand_(body), seen_(body.axis_groups.size()), held_(body.axis_groups.size()), accelerations_(body.axis_groups.size()) {}
 
 std::uint64_t GroupDesk::newest_stop(std::size_t group) const noexcept {
     std::uint64_t newest = 0;
@@ -88,6 +88,7 @@ Verdict GroupDesk::execute(const OperatorCommand& command) noexcept {
             return {};
         case OperatorAction::group_reset: return verdict_of(body_.axis_groups.reset(ref(group), command.owner));
         case OperatorAction::group_enable: return verdict_of(body_.axis_groups.set(ref(group), axes::EnableGroup{}, command.owner));
+        case OperatorAction::group_jog: return hand_.jog(command, group);
         case OperatorAction::group_disable: return submit(group, GroupCommandKind::disable, command.owner);
         default: return {Answer::unknown_name};
     }
@@ -136,6 +137,9 @@ void GroupDesk::look_at(std::size_t group) noexcept {
     seen.along.acceleration = view.path_acceleration;
     seen.along.limiter = view.limiter;
     seen.along.limiting_place = view.limiting_place;
+    seen.along.tool_limit = view.tool_limit;
+    seen.jog_end = view.jog_end;
+    seen.jog_end_place = view.jog_end_place;
     seen.along.to_go = view.remaining_distance;
     seen.along.progress = view.progress;
     seen.along.remaining = view.remaining;

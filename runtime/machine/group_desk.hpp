@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/machine/group_hand.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/operator_command.hpp"
@@ -22,6 +23,7 @@ public:
     /// Step 10, once a cycle, in front of who tells it. Nothing where there is no group. Real-time safe.
     void look() noexcept;
     [[nodiscard]] std::span<const SeenGroup> seen() const noexcept { return seen_; }
+    [[nodiscard]] GroupHand& hand() noexcept { return hand_; }
 
     /// The newest stop level of a member (HandMotion::newest_stop).
     [[nodiscard]] std::uint64_t newest_stop(std::size_t group) const noexcept;
@@ -39,6 +41,7 @@ private:
 
     MachineBody& body_;
     HandMotion& hands_;
+    GroupHand hand_;
     std::vector<SeenGroup> seen_;
     std::vector<std::uint8_t> held_;                // a person has interrupted it
     std::vector<axes::JointVector> accelerations_;  // of the cycle before

@@ -42,7 +42,10 @@ MachineLayout::GroupInfo group_info(const MachineBody& body, const axes::AxisGro
         for (std::size_t i = 0; i < body.config.axes.size(); ++i)
             if (body.config.axes[i].axis.name == name) info.members.push_back(static_cast<std::uint16_t>(i));
     info.arm = group.config().kinematics != nullptr;
-    if (info.arm) info.commands = axes::commands_of(*group.config().kinematics);
+    if (info.arm) {
+        info.commands = axes::commands_of(*group.config().kinematics);
+        info.setup_velocity = axes::setup_velocity_of(group.config());
+    }
     return info;
 }
 

@@ -29,7 +29,7 @@ axes::OperatingMode operating(Mode mode) noexcept {
 }  // namespace
 
 void OperatorDesk::begin() noexcept {
-    for (auto& axis : body_.axes) axis.set_mode(operating(body_.mode));
+    groups_.hand().set_mode(operating(body_.mode));
     if (body_.mode != Mode::automatic) return;
     for (std::size_t p = 0; p < body_.config.programs.size(); ++p)
         if (body_.config.programs[p].autostart) (void)programs_.start(p, 0);
@@ -44,6 +44,7 @@ Verdict OperatorDesk::execute(const OperatorCommand& command) noexcept {
         case OperatorAction::group_override:
         case OperatorAction::group_reset:
         case OperatorAction::group_enable:
+        case OperatorAction::group_jog:
         case OperatorAction::group_disable: return execute_group(command);
         case OperatorAction::none:
         case OperatorAction::set_mode:
@@ -284,12 +285,12 @@ void OperatorDesk::set_mode(Mode wanted) noexcept {
     body_.mode = wanted;
     if (wanted == Mode::automatic) {
         for (std::size_t i = 0; i < body_.axes.size(); ++i) {
-            if (power_held_[i]) body_.axes[i].shut_down();
+            if (power_held_[i]) body_.shut_down(i);
             power_held_[i] = false;
             hands_.forget_jog(i);
         }
     }
-    for (auto& axis : body_.axes) axis.set_mode(operating(wanted));
+    groups_.hand().set_mode(operating(wanted));
 }
 
 void OperatorDesk::release_outputs() noexcept {

@@ -67,13 +67,15 @@ bool OperatorDesk::overtaken(const OperatorCommand& command) const noexcept {
         const auto program = programs_.values().program_of(command.index);
         return program >= 0 && command.after < programs_.newest_stop_of(static_cast<std::size_t>(program));
     }
-    if (command.action == OperatorAction::group_continue) return command.after < groups_.newest_stop(command.index);
+    if (command.action == OperatorAction::group_continue || (command.action == OperatorAction::group_jog && command.value != 0))
+        return command.after < groups_.newest_stop(command.index);
     const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
                                command.action == OperatorAction::measure || (command.action == OperatorAction::jog && command.value != 0);
     return starts_motion && command.axis < body_.axes.size() && command.after < hands_.newest_stop(command.axis);
 }
 
 void OperatorDesk::drain_inbox(Instant at) noexcept {
+    groups_.hand().settle_mode();
     OperatorCommand command;
     for (std::uint8_t i = 0; i < body_.config.commands_per_cycle && inbox_.try_pop(command); ++i) {
         if (body_.recorder) record_command(*body_.recorder, at, command);

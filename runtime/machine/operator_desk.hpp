@@ -40,6 +40,8 @@ public:
     void drain_inbox(Instant at) noexcept;
     /// Where programs give their wishes for power, people give theirs.
     void renew_power() noexcept;
+    /// In the supervision step.
+    void raise_alarms() noexcept { groups_.hand().raise_alarms(); }
     /// The run ends: nobody wants power any more.
     void drop_power() noexcept;
     /// What people have set goes back to its safe value.

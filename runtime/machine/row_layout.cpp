@@ -130,7 +130,7 @@ constexpr GroupSignal tool_signals[] = {
     {"tool_actual_speed", Kind::real, "u/s", real(13), "actual speed of the tool", "工具实际速度"},
 };
 States group_states() { return states_of(axes::GroupState::GroupErrorStop); }
-States path_limiters() { return states_of(axes::PathLimiter::override_factor); }
+States path_limiters() { return states_of(axes::PathLimiter::setup_velocity); }
 States group_commands() { return states_of(axes::GroupCommandKind::disable); }
 constexpr GroupSignal group_signals[] = {
     {"state", Kind::state, "", field(4, 0, 8), "state of the group", "轴组状态", group_states},

@@ -50,6 +50,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     if (body_.config.fell_back && body_.cycles == 0) body_.raise(MachineAlarm::bundle_fell_back, AlarmSource::machine, 0);
     raise_inputs();
     raise_forces();
+    desk_.raise_alarms();
 
     const auto level = emergency_inputs_.level();
     for (std::size_t i = 0; i < body_.axes.size(); ++i) supervise(i, level);

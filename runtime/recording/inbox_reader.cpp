@@ -87,6 +87,11 @@ std::optional<OperatorCommand> read_command(std::span<const std::byte> bytes) {
         for (double* number : {&order.distance, &order.velocity, &order.acceleration, &order.from_hz, &order.to_hz, &order.period})
             *number = in.number();
     }
+    if (command.action == OperatorAction::group_jog) {
+        command.group_jog.frame = static_cast<axes::MC_CoordSystem>(in.take<std::uint8_t>());
+        command.group_jog.plus = in.take<std::uint16_t>();
+        command.group_jog.minus = in.take<std::uint16_t>();
+    }
     return in.ended(command);
 }
 

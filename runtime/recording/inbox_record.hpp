@@ -12,6 +12,7 @@
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
 //            then, of a measure alone: u8 kind, u16 count, f64 distance, velocity, acceleration, from, to, period   51 bytes
+//            then, of a group_jog alone: u8 frame, u16 slots forwards, u16 slots backwards    5 bytes
 //   sample   u16 drive on a serial line, what it said (see record_sample)                      74 bytes
 //   request  u16 Modbus device, u16 request, u8 fault, u8 exception, u8 ever succeeded, i64 sent ns   15 bytes
 //   channel  u16 Modbus device, u16 channel, i64 word: of the request before                   12 bytes
@@ -99,6 +100,11 @@ inline void record_command(Recorder& recorder, Instant at, const OperatorCommand
         bytes.put(order.count);
         for (const double number : {order.distance, order.velocity, order.acceleration, order.from_hz, order.to_hz, order.period})
             bytes.put(number);
+    }
+    if (command.action == OperatorAction::group_jog) {
+        bytes.put(static_cast<std::uint8_t>(command.group_jog.frame));
+        bytes.put(command.group_jog.plus);
+        bytes.put(command.group_jog.minus);
     }
     recorder.append(command_channel, at, bytes.written());
 }

@@ -426,5 +426,37 @@ TEST_F(DoorTest, WhenTheCycleStandsAStopAndAShutdownSaySo) {
     EXPECT_THAT(heard, HasSubstr("'main' of program 'cell'"));
 }
 
+constexpr std::string_view press_group = R"({"id":1,"cmd":"group_jog","group":"table","direction":"x+","velocity":1,"press":true})"
+                                         "\n";
+
+// The hand on a group is one on each of its axes: a release and a lost client are levels of all of them, although nobody serves behind the door; somebody
+// else's release is none.
+TEST_F(DoorTest, AGroupThatIsLetGoOrLostIsALevelOfEachOfItsAxes) {
+    const auto holder = call();
+    const auto other = call();
+    holder.say(press_group);
+    step();
+    other.say("{\"id\":9,\"cmd\":\"group_jog\",\"group\":\"table\",\"velocity\":0}\n");
+    step();
+    EXPECT_THAT(machine.releases, IsEmpty());
+    holder.say("{\"id\":9,\"cmd\":\"group_jog\",\"group\":\"table\",\"velocity\":0}\n");
+    step();
+    EXPECT_THAT(machine.releases, ElementsAre(0, 1));
+    door->pass_on(desk, now);
+    ASSERT_THAT(desk.arrivals, SizeIs(3));
+    EXPECT_FALSE(desk.arrivals[1].level_raised) << "the other one has raised nothing";
+    EXPECT_TRUE(desk.arrivals[2].level_raised);
+}
+
+TEST_F(DoorTest, WhoIsLostWhileItHoldsAGroupLetsGoOfAllOfIt) {
+    auto holder = call();
+    holder.say(press_group);
+    step();
+    holder.hang_up();
+    step();
+    step();
+    EXPECT_THAT(machine.releases, ElementsAre(0, 1));
+}
+
 }  // namespace
 }  // namespace taktwerk::hmi

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "tests/hmi_bridge/fake_machine.hpp"
 #include "tests/patience.hpp"
@@ -560,6 +561,117 @@ TEST_F(GatewayTest, TooManyCommandsInFlightAreRefusedWithoutForgettingOne) {
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->answer, Answer::queue_full);
     EXPECT_EQ(machine.submitted.size(), Gateway::remembered);
+}
+
+// --- a hand on a group ----------------------------------------------------------------------------------------------------------
+
+class GroupJogTest : public GatewayTest {
+protected:
+    CommandRequest group_jog(const std::string& direction, double velocity, bool press, std::optional<ClientId> who = {}) {
+        auto r = request(CommandKind::group_jog, "table");
+        r.client = who.value_or(client);
+        r.value = velocity;
+        r.press = press;
+        r.valid_for = 250ms;
+        r.group_jog.direction = direction;
+        return r;
+    }
+};
+
+// Which way becomes slots: X is slot 0 of the machine's directions, the second axis slot 1 of its own; a distance goes with it.
+TEST_F(GroupJogTest, WordsBecomeSlots) {
+    auto r = group_jog("y- x+", 0.25, true);
+    r.group_jog.distance = 5;
+    ASSERT_TRUE(outcome(r).accepted());
+    const auto& command = machine.submitted.back();
+    EXPECT_EQ(command.action, runtime::OperatorAction::group_jog);
+    EXPECT_EQ(command.index, 0);
+    EXPECT_TRUE(command.flag);
+    EXPECT_EQ(command.value, 0.25);
+    EXPECT_EQ(command.value2, 5);
+    EXPECT_EQ(command.group_jog.frame, axes::mcMCS);
+    EXPECT_EQ(command.group_jog.plus, 1u << 0);
+    EXPECT_EQ(command.group_jog.minus, 1u << 1);
+    r = group_jog("y+", 1, true);
+    r.group_jog.frame = "acs";
+    ASSERT_TRUE(outcome(r).accepted());
+    EXPECT_EQ(machine.submitted.back().group_jog, (runtime::GroupJogOrder{axes::mcACS, 1u << 1, 0}));
+}
+
+// One hand has the whole group: nobody else jogs it, or moves or homes an axis of it; and who jogs one of its axes keeps the group from others.
+TEST_F(GroupJogTest, WhoJogsAGroupJogsAllOfItsAxes) {
+    const auto other = gateway.open(Source::socket, "panel B", Rights::operating);
+    ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+    auto move = request(CommandKind::move, "y");
+    move.client = other;
+    move.value2 = 10;
+    auto home = request(CommandKind::home, "x");
+    home.client = other;
+    for (const auto& r : {move, home, jog(20, true, other), group_jog("x+", 1, true, other), group_jog("x+", 1, false, other)}) {
+        const auto refused = outcome(r);
+        EXPECT_EQ(refused.answer, Answer::no_control);
+        EXPECT_THAT(refused.error.what, HasSubstr("panel A"));
+    }
+    ASSERT_TRUE(outcome(group_jog("x+", 1, false)).accepted()) << "its own renewal";
+    EXPECT_TRUE(outcome(group_jog("", 0, false, other)).accepted()) << "letting go of nothing is no error";
+    EXPECT_THAT(machine.releases, testing::IsEmpty());
+
+    EXPECT_TRUE(outcome(group_jog("", 0, false)).accepted());
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0, 1));
+    EXPECT_EQ(outcome(group_jog("x+", 1, false)).answer, Answer::stale) << "after letting go a renewal moves nothing";
+    ASSERT_TRUE(outcome(jog(20, true, other)).accepted());
+    const auto refused = outcome(group_jog("y+", 1, true));
+    EXPECT_EQ(refused.answer, Answer::no_control);
+    EXPECT_THAT(refused.error.what, HasSubstr("panel B is jogging or measuring axis x"));
+}
+
+TEST_F(GroupJogTest, AClientThatClosesLetsGoOfTheWholeGroup) {
+    ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+    gateway.close(client);
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0, 1));
+}
+
+// Its renewal in the cycle has failed: the hold is over here, too, and another client may press.
+TEST_F(GroupJogTest, ARefusedRenewalEndsTheHold) {
+    ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+    const auto limit = outcome(group_jog("x+", 1, false), Answer::refused_by_axis, axes::ErrorId::beyond_software_limit);
+    EXPECT_THAT(limit.error.what, HasSubstr("as far as its axes may"));
+    EXPECT_EQ(outcome(group_jog("x+", 1, false)).answer, Answer::stale);
+    const auto other = gateway.open(Source::socket, "panel B", Rights::operating);
+    EXPECT_TRUE(outcome(group_jog("x-", 1, true, other)).accepted());
+}
+
+// Nobody is known over LCM, and nobody is missed: no jog of a group from there. It lives as short as a jog of an axis.
+TEST_F(GroupJogTest, NotOverLcmAndNotForLong) {
+    const auto lcm = gateway.open(Source::lcm, "LCM", Rights::operating);
+    const auto refused = outcome(group_jog("x+", 1, true, lcm));
+    EXPECT_EQ(refused.answer, Answer::no_control);
+    EXPECT_THAT(refused.error.remedy, HasSubstr("local socket"));
+    auto late = group_jog("x+", 1, true);
+    late.valid_for = 1s;
+    EXPECT_EQ(outcome(late).answer, Answer::bad_value);
+    auto old = group_jog("x+", 1, true);
+    old.age = 300ms;
+    EXPECT_EQ(outcome(old).answer, Answer::stale);
+    auto release = group_jog("", 0, false);
+    release.age = 10s;
+    EXPECT_TRUE(outcome(release).accepted()) << "letting go is never too late";
+    EXPECT_EQ(outcome(group_jog("x+", 0, true)).answer, Answer::bad_value) << "a press at 0";
+}
+
+// A group without an arm has its axes alone, and one whose axes a program gives nobody can hold as a whole.
+TEST_F(GroupJogTest, WhatAGroupCannotDoIsSaid) {
+    machine.its_layout.groups[0].arm = false;
+    const auto no_arm = outcome(group_jog("x+", 1, true));
+    EXPECT_EQ(no_arm.answer, Answer::bad_value);
+    EXPECT_THAT(no_arm.error.remedy, HasSubstr("acs"));
+    machine.its_layout.groups[0].arm = true;
+    EXPECT_THAT(outcome(group_jog("rz+", 1, true)).error.what, HasSubstr("does not turn its tool"));
+    EXPECT_THAT(outcome(group_jog("xx+", 1, true)).error.remedy, HasSubstr("\"x+\""));
+    machine.its_layout.groups[0].members.clear();
+    const auto empty = outcome(group_jog("x+", 1, true));
+    EXPECT_EQ(empty.answer, Answer::not_possible_now);
+    EXPECT_THAT(empty.error.what, HasSubstr("no axes"));
 }
 
 }  // namespace

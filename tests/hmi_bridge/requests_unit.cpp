@@ -179,7 +179,8 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
                                          R"("cmd":"group_override","group":"table","value":0.5)",
                                          R"("cmd":"group_reset","group":"table")",
                                          R"("cmd":"group_enable","group":"table")",
-                                         R"("cmd":"group_disable","group":"table")"};
+                                         R"("cmd":"group_disable","group":"table")",
+                                         R"("cmd":"group_jog","group":"table","direction":"x+","velocity":0.5,"press":true)"};
     ASSERT_EQ(lines.size(), command_words.size());
     auto& limits = machine.its_config.limits;  // of an axis that can be measured
     limits.velocity = 200, limits.acceleration = limits.deceleration = 5000, limits.jerk = 100000;

@@ -88,7 +88,7 @@ inline void draw(FakeMachine& machine, std::uint64_t seed) {
         for (auto* value : {&group.tool.speed, &group.tool.actual_speed, &group.along.velocity, &group.along.acceleration,
                             &group.along.to_go, &group.along.progress, &group.override_factor, &group.operators_override})
             *value = number();
-        group.along.limiter = static_cast<axes::PathLimiter>(below(4));
+        group.along.limiter = static_cast<axes::PathLimiter>(below(5));
         group.along.limiting_place = static_cast<std::uint8_t>(below(6));
         group.along.remaining = Duration{below(1'000'000'000)};
         group.active_kind = static_cast<axes::GroupCommandKind>(below(13));

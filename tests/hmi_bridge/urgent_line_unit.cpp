@@ -34,5 +34,21 @@ TEST(UrgentLines, NothingElseWithTooManyKeysActsAtOnce) {
     EXPECT_FALSE(with_keys(R"({"cmd":"jog","axis":"x","velocity":1)", 62));
 }
 
+// A group's jog is held and let go as that of each of its axes ("table" has both); what is no group of this machine is not urgent, and refused behind the door.
+TEST(UrgentLines, AJogOfAGroupIsOneOfEachOfItsAxes) {
+    const auto press = with_keys(R"({"cmd":"group_jog","group":"table","direction":"x+","velocity":0.5,"press":true)", 0);
+    ASSERT_TRUE(press);
+    EXPECT_EQ(press->kind, UrgentLine::Kind::jog_hold);
+    EXPECT_TRUE(press->press);
+    EXPECT_EQ(press->held, (std::vector<std::uint16_t>{0, 1}));
+    const auto release = with_keys(R"({"cmd":"group_jog","group":"table","velocity":0)", 0);
+    ASSERT_TRUE(release);
+    EXPECT_EQ(release->kind, UrgentLine::Kind::jog_release);
+    EXPECT_EQ(release->held, (std::vector<std::uint16_t>{0, 1}));
+    EXPECT_FALSE(with_keys(R"({"cmd":"group_jog","group":"tabel","velocity":0)", 0));
+    EXPECT_FALSE(with_keys(R"({"cmd":"group_jog","velocity":0)", 0));
+    EXPECT_FALSE(with_keys(R"({"cmd":"group_jog","group":["table"],"velocity":0)", 0));
+}
+
 }  // namespace
 }  // namespace taktwerk::hmi

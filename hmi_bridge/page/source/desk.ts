@@ -27,14 +27,18 @@ export class Desk {
     /** The pages of the machine's builder. */
     readonly views: BuilderViews;
 
-    /** `hold`: a jog; `pressing`: a button of such a page. One hand holds one of them. */
-    constructor(readonly link: Link, readonly hold: JogHold, readonly pressing: JogHold) {
+    /** What ended the last jog of a group, or kept it from beginning; empty: nothing but its hand. */
+    stopped_by = '';
+
+    /** `hold`: a jog; `pressing`: a button of such a page; `leading`: a jog of a group. One hand holds one of them. */
+    constructor(readonly link: Link, readonly hold: JogHold, readonly pressing: JogHold, readonly leading: JogHold) {
         this.views = new BuilderViews(link);
     }
     /** Whatever is held. */
     let_go(ending: Ending): void {
         this.hold.end(ending);
         this.pressing.end(ending);
+        this.leading.end(ending);
     }
 
     /** What this page has commanded, newest first. */

@@ -1,6 +1,7 @@
 // The page: joins the connection, the hand, the frame and the pages (pages/list.ts); and the loop that writes the newest state into the page shown.
 import { Desk, Page } from './desk';
 import { Frame, html_language } from './frame';
+import { GroupJog } from './group/jog_pad';
 import { Clock, Ending, JogHold, watch_page } from './jog';
 import { Link } from './link';
 import { Entry, pages } from './pages/list';
@@ -31,13 +32,29 @@ const pressing = new JogHold({
     blocked: () => !link.opened || link.stalled,
     stale: () => link.stale,
 }, clock);
-const desk = new Desk(link, hold, pressing);
+// A group is held in a frame and a direction: as text, what the hold holds (group/jog_pad.ts).
+const leading = new JogHold({
+    jog: async (order, velocity, press) => {
+        const jog = JSON.parse(order) as GroupJog;
+        if (press) desk.stopped_by = '';
+        const answer = await link.request(velocity === 0 ? { cmd: 'group_jog', group: jog.group, velocity } : { cmd: 'group_jog', ...jog, velocity, ...(press ? { press } : {}) });
+        if (!answer.ok && velocity !== 0) {
+            desk.refused(answer);
+            desk.stopped_by = said(answer.error?.what ?? '').text;
+        }
+        return answer.ok;
+    },
+    blocked: () => !link.opened || link.stalled,
+    stale: () => link.stale,
+}, clock);
+const desk = new Desk(link, hold, pressing, leading);
 const tell_end = (group: string) => (ending: Ending) => {
     const key = `${group}_${ending}`;
     if (Object.hasOwn(texts, key)) desk.tell('note', say(key as Key));
 };
 hold.on_end = tell_end('jog_ended');
 pressing.on_end = tell_end('press_ended');
+leading.on_end = tell_end('jog_ended');
 
 let frame: Frame;
 let shown: Page | undefined;
@@ -114,6 +131,7 @@ choose_language((remembered('language') ?? (navigator.language.startsWith('zh') 
 rebuild();
 watch_page(hold);
 watch_page(pressing);
+watch_page(leading);
 desk.tell_reasons();
 let asked = false;
 link.on_change = () => {

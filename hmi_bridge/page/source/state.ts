@@ -206,12 +206,22 @@ export interface AxisLayout {
     drive_axis: number;
 }
 
+export interface GroupLayout {
+    name: string;
+    unit: string;
+    members: string[];
+    arm: boolean;
+    /** Which of X Y Z RX RY RZ the arm commands. */
+    commands: boolean[];
+    /** u/s of the tool's point in set-up mode, and of a jog; 0: no arm. Absent from an older runtime. */
+    setup_velocity?: number;
+}
+
 export interface MachineLayout {
     machine: string;
     cycle_ns: number;
     axes: AxisLayout[];
-    /** `commands`: which of X Y Z RX RY RZ the arm commands. */
-    groups?: { name: string; unit: string; members: string[]; arm: boolean; commands: boolean[] }[];
+    groups?: GroupLayout[];
     slaves: string[];
     inputs: string[];
     outputs: string[];

@@ -183,7 +183,7 @@ private:
         const auto command = message.rule->command;
         const auto patience = command.starts_with("drive_") ? drive_patience : answer_patience;
         const bool renewal = buttons_.is_renewal(message);
-        if (message.is_jog() && message.request.contains("axis")) jogged_ = message.may_move() ? message.request["axis"] : Json{};
+        if (message.is_jog()) jogged_ = message.may_move() ? message.release() : Json{};
         const bool asks = only_asks(*message.rule);
         if (asks) ++asked_;
         auto request = message.request;
@@ -219,10 +219,9 @@ private:
         return *line_;
     }
     void let_go() {
-        if (!line_ || !jogged_.is_string()) return;
-        line_->ask(Json{{"cmd", "jog"}, {"axis", jogged_}, {"velocity", 0}, {"utime", wall_utime()}}, answer_patience,
-                   [](const MachineAnswer&) {});
-        jogged_ = Json{};
+        if (!line_ || jogged_.is_null()) return;
+        jogged_["utime"] = wall_utime();
+        line_->ask(std::exchange(jogged_, Json{}), answer_patience, [](const MachineAnswer&) {});
     }
 
     void audit(const PageMessage& message, const MachineAnswer& answer, bool handed_on) {
@@ -239,7 +238,7 @@ private:
     MessageAge age_;
     Duration waited_{};  ///< of the message that is being judged
     HeldButtons buttons_;
-    Json jogged_;  ///< the axis that this page holds; null: none
+    Json jogged_;  ///< what lets go of the axis or group that this page holds; null: it holds none
     Instant stale_told_{}, watched_since_{}, stranger_since_{}, used_;
     std::uint64_t told_ = 0, told_site_ = 0;
     std::optional<Role> told_role_;

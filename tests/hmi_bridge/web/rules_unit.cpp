@@ -64,6 +64,7 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
                                                       {"group_reset", "nyyy"},
                                                       {"group_enable", "nyyy"},
                                                       {"group_disable", "nyyy"},
+                                                      {"group_jog", "nyyy"},
                                                       {"reset_peaks", "nyyy"},
                                                       {"force", "nnyy"},
                                                       {"unforce", "nnyy"},

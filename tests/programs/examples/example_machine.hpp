@@ -18,7 +18,8 @@ using namespace std::chrono_literals;
 
 class ExampleMachine {
 public:
-    explicit ExampleMachine(const std::string& name) {
+    /// `change`: of what its file says, before it is built.
+    explicit ExampleMachine(const std::string& name, const std::function<void(runtime::MachineConfig&)>& change = {}) {
         config::LoadOptions options;
         options.simulate = true;
         options.drive_dirs.emplace_back(TAKTWERK_SOURCE_DIR "/config/drives");
@@ -29,6 +30,7 @@ public:
             return;
         }
         auto config = std::move(std::get<0>(loaded).machine);
+        if (change) change(config);
         world_ = std::make_unique<runtime::World>(config, clock_.now());
         auto built = runtime::Machine::build(std::move(config), world_->transport(), world_->serial().lines());
         if (const auto* errors = std::get_if<1>(&built)) {
@@ -103,6 +105,7 @@ public:
         EXPECT_TRUE(runner_->run_until([&] { return (answer = machine_->next_answer()).has_value(); }, 1s));
         return answer.value_or(runtime::CommandAnswer{});
     }
+    [[nodiscard]] Instant now() const { return clock_.now(); }
     [[nodiscard]] runtime::Machine& machine() { return *machine_; }
     [[nodiscard]] const runtime::Snapshot& snapshot() const { return *latest_; }
     /// The hardware behind the bus: what really moves.

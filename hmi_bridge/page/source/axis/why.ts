@@ -33,7 +33,7 @@ export function why_not_by_hand(axis: AxisState, machine: MachineState): string 
 
 const behind = (block: string): string => (block ? ` (${block})` : '');
 
-const why_emergency = (machine: MachineState): string => say(machine.emergency_stop_unread ? 'why_emergency_unread' : 'why_emergency');
+export const why_emergency = (machine: MachineState): string => say(machine.emergency_stop_unread ? 'why_emergency_unread' : 'why_emergency');
 
 /** Its alarms with what to do; where they are gone meanwhile, what its error means. */
 function why_error(axis: AxisState, machine: MachineState): string[] {

@@ -1,6 +1,7 @@
 // A group of axes: where its tool is in the machine and where its axes are, the path that it went, who holds it back, what it does, and the hand on it.
 import { Desk, Page, panel, Values } from '../desk';
 import { group_hand } from '../group/hand';
+import { jog_pad } from '../group/jog_pad';
 import { member_rows } from '../group/members';
 import { PathView } from '../group/path_view';
 import { Trail, trail_seconds } from '../group/trail';
@@ -57,7 +58,7 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
         return tab;
     }));
     const state = element('div', { class: 'state', 'data-value': 'group_state' }), note = element('p', { class: 'hint', 'data-value': 'group_note' });
-    const tool = tool_table(unit), facts = new Values(), members = member_rows(), hand = group_hand(desk, name);
+    const tool = tool_table(unit), facts = new Values(), members = member_rows(), hand = group_hand(desk, name), pad = jog_pad(desk, layout);
     const done = element('i'), progress = element('div', { class: 'progress', role: 'progressbar', 'data-value': 'progress' }, done);
     const why = element('ul', { class: 'why', 'data-value': 'group_why' }), error = panel('group_why_error', why);
     const path = new PathView(unit), trail = new Trail((request) => desk.link.request(request), name, desk.link.layout?.cycle_ns ?? 1e6);
@@ -65,11 +66,12 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
     const drawn = element('section', { class: 'panel' }, element('h2', {}, say('group_path', { seconds: String(trail_seconds) })), path.root, unread);
     const root = element('div', { class: 'page group' }, element('div', { class: 'bar' }, tabs, element('span', { class: 'space' }), state), error,
         element('div', { class: 'columns' },
-            element('div', { class: 'stack' }, panel('group_tool', tool.root, note), panel('group_doing', facts.root, progress), hand.root),
+            element('div', { class: 'stack' }, panel('group_tool', tool.root, note), panel('group_doing', facts.root, progress), pad.root, hand.root),
             element('div', { class: 'stack' }, ...(layout.arm ? [drawn] : []), panel('group_axes', members.root))));
     let asked = 0;
     return {
         root,
+        leave: pad.leave,
         update(machine: MachineState) {
             const group = machine.groups?.find((one) => one.name === name);
             if (!group) return;
@@ -79,6 +81,7 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
             tool.update(group);
             members.update(group);
             hand.update(group, machine);
+            pad.update(group, machine);
             write_facts(facts, group);
             done.style.width = `${(value(group.progress) * 100).toFixed(1)}%`;
             mark(progress, 'aria-valuenow', String(Math.round(value(group.progress) * 100)));

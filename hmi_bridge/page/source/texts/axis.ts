@@ -72,6 +72,7 @@ export const axis = {
     limiter_axis_limit: ['the limit of the axis', '轴的速度限制'],
     limiter_manual_speed: ['the manual or set-up speed', '手动/调试速度'],
     limiter_override_factor: ['the override', '倍率'],
+    limiter_setup_velocity: ['the set-up velocity of the tool', '工具的调试速度'],
     limiter_software_limit: ['a software limit ahead', '前方软限位'],
     limiter_stopping: ['stopping', '正在停止'],
     drive: ['Drive', '驱动器'],
