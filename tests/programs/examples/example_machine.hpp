@@ -16,9 +16,12 @@ namespace taktwerk::testing {
 
 using namespace std::chrono_literals;
 
+/// `simulation: events` of the machine file.
+enum class Events : std::uint8_t { happen, left_out };
+
 class ExampleMachine {
 public:
-    explicit ExampleMachine(const std::string& name) {
+    explicit ExampleMachine(const std::string& name, Events events = Events::happen) {
         config::LoadOptions options;
         options.simulate = true;
         options.drive_dirs.emplace_back(TAKTWERK_SOURCE_DIR "/config/drives");
@@ -29,6 +32,7 @@ public:
             return;
         }
         auto config = std::move(std::get<0>(loaded).machine);
+        if (events == Events::left_out) config.simulation.events.clear();
         world_ = std::make_unique<runtime::World>(config, clock_.now());
         auto built = runtime::Machine::build(std::move(config), world_->transport(), world_->serial().lines());
         if (const auto* errors = std::get_if<1>(&built)) {
