@@ -1,7 +1,5 @@
-// One axis of each kind of drive, six of the robot's: every axis powers, homes, and goes to and fro until the machine stops. An axis
-// that fails is reset after a while, homes again where it has lost its reference, and goes on; the others do not wait for it.
-
-#include <array>
+// One axis of each kind of drive that moves alone: every axis powers, homes, and goes to and fro until the machine stops. An axis that fails is reset
+// after a while, homes again where it has lost its reference, and goes on; the others do not wait for it. The arm of the same machine: belt_picking.cpp.
 
 #include "fb_library/all_blocks.hpp"
 #include "programs/api/entry.hpp"
@@ -90,9 +88,8 @@ struct ToAndFro : Station {
 };
 
 class FiveDrives final : public Program {
-    // mm and deg, mm/s and deg/s
+    // mm, mm/s
     Positioning sv33_{20, 300, 200}, da200_{20, 250, 150}, stepper_{10, 100, 40};
-    std::array<Positioning, 6> robot_{{{-40, 60, 90}, {-30, 45, 90}, {-50, 50, 120}, {-90, 90, 180}, {-60, 60, 180}, {-180, 180, 270}}};
     ToAndFro spindle_{20, 200, 90};
 
     std::int64_t least_strokes_ = 0, failures_ = 0, recoveries_ = 0;
@@ -101,7 +98,6 @@ class FiveDrives final : public Program {
     void each(Do&& action) {
         action(sv33_);
         action(da200_);
-        for (auto& joint : robot_) action(joint);
         action(stepper_);
         action(spindle_);
     }
@@ -110,8 +106,6 @@ public:
     void declare(Declaration& d) override {
         sv33_.axis = d.axis("sv33");
         da200_.axis = d.axis("da200");
-        static constexpr std::array joints{"j1", "j2", "j3", "j4", "j5", "j6"};
-        for (std::size_t i = 0; i < robot_.size(); ++i) robot_[i].axis = d.axis(joints[i]);
         stepper_.axis = d.axis("stepper");
         spindle_.axis = d.axis("xp200");
         d.monitor("least_strokes", least_strokes_, "", "of the axis that made the fewest");

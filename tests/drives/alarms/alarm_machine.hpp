@@ -28,7 +28,7 @@ namespace taktwerk::test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-/// The axes of that drive and the terminal with the emergency stop; no program, no events, in manual mode.
+/// The axes of that drive (of two of a kind the first one) and the terminal with the emergency stop; no program, no group, no events, in manual mode.
 inline runtime::MachineConfig machine_of(const std::string& drive) {
     config::LoadOptions options;
     options.simulate = true;
@@ -46,7 +46,8 @@ inline runtime::MachineConfig machine_of(const std::string& drive) {
     m.simulation.events.clear();
     m.simulation.supervision = runtime::Supervision::strict;
     m.start_mode = runtime::Mode::manual;
-    std::erase_if(m.axes, [&](const auto& axis) { return axis.profile->name != drive; });
+    m.axis_groups.clear();
+    std::erase_if(m.axes, [&](const auto& axis) { return axis.profile->name != drive || axis.slave == "belt_drive"; });
     const auto used = [&](const std::string& slave) {
         return slave == "io" || std::any_of(m.axes.begin(), m.axes.end(), [&](const auto& axis) { return axis.slave == slave; });
     };

@@ -16,10 +16,14 @@ namespace taktwerk::testing {
 
 using namespace std::chrono_literals;
 
+/// `simulation: events` of the machine file.
+enum class Events : std::uint8_t { happen, left_out };
+
 class ExampleMachine {
 public:
+    explicit ExampleMachine(const std::string& name, Events events = Events::happen) : ExampleMachine(name, without(events)) {}
     /// `change`: of what its file says, before it is built.
-    explicit ExampleMachine(const std::string& name, const std::function<void(runtime::MachineConfig&)>& change = {}) {
+    ExampleMachine(const std::string& name, const std::function<void(runtime::MachineConfig&)>& change) {
         config::LoadOptions options;
         options.simulate = true;
         options.drive_dirs.emplace_back(TAKTWERK_SOURCE_DIR "/config/drives");
@@ -127,6 +131,11 @@ public:
     }
 
 private:
+    static std::function<void(runtime::MachineConfig&)> without(Events events) {
+        if (events == Events::happen) return {};
+        return [](runtime::MachineConfig& config) { config.simulation.events.clear(); };
+    }
+
     VirtualClock clock_;
     std::unique_ptr<runtime::World> world_;
     runtime::testing::ReplayCheck replayed_;
