@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/group/written_pose.hpp"
 #include "axes/kinematics/kinematics.hpp"
 
 namespace taktwerk::axes {
@@ -45,7 +46,11 @@ ErrorId refuse_equipment(const GroupCommand& setting) noexcept {
 }
 
 void apply(GroupFrames& frames, const GroupCommand& setting) noexcept {
-    if (setting.kind == GroupCommandKind::track_frame) frames.tracks[product_index(setting.frame)] = setting.track;
+    if (setting.kind == GroupCommandKind::track_frame) {
+        // Where it stands is looked at in each cycle; a command of this one counts from here already, and its target has to be looked at there.
+        frames.tracks[product_index(setting.frame)] = setting.track;
+        frames.product[product_index(setting.frame)] = numbers_of(object_at(setting.track, 0, 1));
+    }
     if (setting.kind != GroupCommandKind::set_frame) return;
     if (is_product(setting.frame)) frames.tracks[product_index(setting.frame)] = {};
     if (SixNumbers* frame = frames.find(setting.frame)) *frame = six_of(setting.target);

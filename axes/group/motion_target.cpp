@@ -29,11 +29,20 @@ JointVector target_of(const GroupCommand& command, const JointVector& here, cons
     return target;
 }
 
+bool keeps_turn(const GroupCommand& command, const Kinematics& arm) noexcept {
+    const auto which = arm.commands();
+    const auto& target = command.target;
+    return !(which[3] || which[4] || which[5]) && target[3] == 0 && target[4] == 0 && target[5] == 0;
+}
+
 ErrorId refuse_reach(const GroupCommand& command, const CommandPlace& place, const JointVector& here, const Kinematics* arm) noexcept {
     if (command.frame == mcACS || command.frame == mcTCS || is_relative(command.kind)) return ErrorId::none;
     Joints near{};
     for (std::size_t i = 0; i < max_joints; ++i) near[i] = here[i];
-    const auto stand = arm->inverse(seen_through(place.frame, pose_of_six(command.target)), place.carried.tool, command.wanted, near);
+    Pose goal = seen_through(place.frame, pose_of_six(command.target));
+    if (keeps_turn(command, *arm))
+        if (const auto now = arm->forward(near, place.carried.tool); now.miss.ok()) goal.orientation = now.pose.orientation;
+    const auto stand = arm->inverse(goal, place.carried.tool, command.wanted, near);
     if (stand.ok()) return ErrorId::none;
     return stand.miss.fault == KinematicFault::joint_limit ? ErrorId::beyond_software_limit : ErrorId::out_of_reach;
 }

@@ -17,6 +17,9 @@ class Kinematics;
 /// Where the members go from `here`; in other frames than ACS where they are.
 [[nodiscard]] JointVector target_of(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept;
 
+/// An absolute position that says no turn (RX, RY, RZ are 0), to an arm that cannot turn: its tool stays turned as it is, however the frame is turned.
+[[nodiscard]] bool keeps_turn(const GroupCommand& command, const Kinematics& arm) noexcept;
+
 /// Whether the arm reaches an absolute position, whichever way it stands then: out_of_reach, beyond_software_limit.
 [[nodiscard]] ErrorId refuse_reach(const GroupCommand& command, const CommandPlace& place, const JointVector& here,
                                    const Kinematics* arm) noexcept;

@@ -91,10 +91,14 @@ MoveShape joint_line(const MemberVector& to, const CarriedTool& carried, const M
 /// The command's frame; TCS is the tool's as the move before leaves it (G-075).
 Pose frame_of(const GroupOrder& move, const Pose& start) noexcept { return move.command.frame == mcTCS ? start : move.place.frame; }
 
-Pose goal_of(const GroupOrder& move, const Pose& start) noexcept {
+Pose goal_of(const GroupOrder& move, const Pose& start, const Kinematics& arm) noexcept {
     const Pose frame_pose = frame_of(move, start);
     const Pose given = pose_of_six(move.command.target);
-    if (!is_relative(move.command.kind)) return composed(frame_pose, given);
+    if (!is_relative(move.command.kind)) {
+        Pose goal = composed(frame_pose, given);
+        if (keeps_turn(move.command, arm)) goal.orientation = start.orientation;
+        return goal;
+    }
     // A distance in the directions of its frame; its turns are about the tool's point, in the frame's directions too.
     const Eigen::Quaterniond frame = orientation_of(frame_pose);
     const Eigen::Quaterniond turn = frame * orientation_of(given) * frame.conjugate();
@@ -169,7 +173,7 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
     const Pose& tool = move.place.carried.tool;
     const ForwardResult here = space.arm->forward(joints_of(from.members), tool);
     if (!here.miss.ok()) return refused(error_of(here.miss));
-    const Pose start = here.pose, goal = goal_of(move, start);
+    const Pose start = here.pose, goal = goal_of(move, start, *space.arm);
     // A path keeps the way the arm stands (G-042): one that is told to end otherwise is none.
     const auto& wanted = move.command.wanted;
     if (!direct && !answers(from.configuration.branch, wanted.branch)) return refused(ErrorId::out_of_reach);

@@ -292,6 +292,27 @@ TEST(GroupTracking, AScaraDrawsOnAMovingObject) {
     expect_place(rig.on_object(), -10, 0, 0, 1e-8);
 }
 
+// What is commanded in the scan in which the frame is tracked is meant on the object, not where the frame stood before: that is the middle of the SCARA's foot, which nothing reaches.
+TEST(GroupTracking, ACommandOfTheSameScanIsMeantOnTheObject) {
+    TrackRig rig(selective_axes(), selective_arm());
+    const auto ready = rig.give({.kind = GroupCommandKind::direct_absolute, .target = {-30, 80, 0, 20}});
+    ASSERT_TRUE(rig.done(ready.id));
+    const auto start = rig.view().tool_set;
+    GroupCommand track{.kind = GroupCommandKind::track_frame, .frame = mcPCS, .execution = mcImmediately};
+    track.track = {.kind = FrameTrack::Kind::belt, .master = rig.belt()};
+    track.track.origin = {start[0], start[1], 0, 0, 0, 0};
+    Submitted tracked, there;
+    rig.step([&] {
+        tracked = rig.submit(track);
+        there = rig.submit(on_product(line({5, 0, 0, 0, 0, start[5]}, 60)));
+    });
+    ASSERT_EQ(tracked.error, ErrorId::none);
+    ASSERT_EQ(there.error, ErrorId::none);
+    ASSERT_TRUE(rig.done(there.id)) << static_cast<int>(rig.error_of(there.id));
+    EXPECT_NEAR(rig.view().tool_set[0], start[0] + 5, 1e-9);
+    EXPECT_NEAR(rig.view().tool_set[1], start[1], 1e-9);
+}
+
 // G-084: an encoder measures the belt: what it says is as old as its latch, and set-points act a cycle later; both are made up for. The belt really is
 // 30 u/s * 1 ms = 0.03 u further for each cycle of them.
 TEST(GroupTracking, WhatAnEncoderSaysIsTakenOnToWhereSetPointsAct) {

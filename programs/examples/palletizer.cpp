@@ -1,0 +1,290 @@
+// A SCARA takes boxes from a chute and stacks them on a pallet, layer by layer, each layer turned against the one below, so that the stack holds together.
+// The pattern is written in the pallet's own frame; where the pallet stands is told once (MC_SetCoordinateTransform), by whoever has measured it.
+//
+//     even layers        odd layers           boxes of 60 x 40 mm, 120 x 120 mm in all
+//     +-----+-----+      +---+---+---+
+//     |     |     |      |   |   |   |        Between the places the arm moves as its joints like it best (MC_MoveDirectAbsolute:
+//     +-----+-----+      |   |   |   |        no straight way is wanted there). Close to boxes the tool goes straight, and comes in
+//     |     |     |      +---+---+---+        aslant from the free side, so that no box rubs against its neighbours; that corner is
+//     +-----+-----+      |   |   |   |        passed on a curve.
+//     |     |     |      |   |   |   |
+//     +-----+-----+      +---+---+---+
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "fb_library/all_blocks.hpp"
+#include "programs/api/entry.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using namespace taktwerk;
+using namespace taktwerk::fb;
+
+constexpr double degree = std::numbers::pi / 180;
+
+// mm. The tool's point is the middle of the box's top. Of the machine (mcMCS):
+constexpr double chute_x = 250, chute_y = -320, chute_top = 130;  // of a box that lies there along X
+constexpr double pallet_height = 50;
+// Of a box, and of the ways close to it.
+constexpr double length = 60, width = 40, height = 30;
+constexpr double high = 100;    // above the place: from here on straight
+constexpr double aslant = 10;   // to the free side ...
+constexpr double near_by = 25;  // ... and above it, where the way turns down
+constexpr std::int64_t layers = 3, boxes_of_layer = 6;
+
+/// Where a box lies on the pallet: the middle of its top, in the pallet's frame (mcPCS).
+MC_CART_REF place_of(std::int64_t box) {
+    const std::int64_t layer = box / boxes_of_layer, in_layer = box % boxes_of_layer;
+    const double z = height * static_cast<double>(layer + 1);
+    if (layer % 2 == 0)  // two columns of three, along X
+        return {.X = length * (static_cast<double>(in_layer % 2) + 0.5), .Y = width * (static_cast<double>(in_layer / 2) + 0.5), .Z = z};
+    return {.X = width * (static_cast<double>(in_layer % 3) + 0.5),  // three columns of two, across
+            .Y = length * (static_cast<double>(in_layer / 3) + 0.5),
+            .Z = z,
+            .RZ = 90 * degree};
+}
+
+class Palletizer final : public Program {
+    static constexpr std::size_t joints = 4;
+    enum class Step : std::uint8_t { raise, prepare, wait, take, stack, change_pallet };
+
+    std::array<AxisRef, joints> axes_;
+    GroupRef arm_;
+    Input<bool> box_there_, pallet_there_;
+    Output<bool> grip_, pallet_full_;
+    Parameter pallet_x_, pallet_y_, pallet_turned_, speed_;
+
+    MC_GroupPower power_;
+    std::array<MC_Home, joints> homes_;
+    MC_GroupEnable enable_;
+    MC_GroupReadStatus status_;
+    MC_GroupReadPosition place_;
+    // A round, in its order.
+    MC_MoveDirectRelative raise_;
+    MC_GroupSelectTool tool_;
+    MC_SetCoordinateTransform pallet_;
+    MC_MoveDirectAbsolute over_chute_;
+    MC_MoveLinearAbsolute onto_box_, off_chute_;
+    MC_GroupWaitTime gripping_;
+    MC_MoveDirectAbsolute over_pallet_;
+    MC_MoveLinearAbsolute beside_, down_, off_pallet_;
+    MC_GroupWaitTime letting_go_;
+    TON exchange_;
+
+    Step step_ = Step::raise;
+    bool fresh_ = true;   ///< the first scan of a step: its blocks are called with Execute FALSE, so that the next one is an edge
+    bool begun_ = false;  ///< its blocks have Execute TRUE
+    bool works_ = true, stopped_ = false;
+    bool holds_ = false;    ///< the gripper is closed
+    bool carries_ = false;  ///< a box is off the chute and not on the pallet yet
+    std::int64_t box_ = 0;  ///< the next one of this pallet
+    std::int64_t stacked_ = 0, pallets_ = 0, error_ = 0;
+
+public:
+    void declare(Declaration& d) override {
+        const char* names[joints] = {"shoulder", "elbow", "lift", "wrist"};
+        for (std::size_t i = 0; i < joints; ++i) axes_[i] = d.axis(names[i]);
+        arm_ = d.axis_group("arm");
+        box_there_ = d.input("box_there");
+        pallet_there_ = d.input("pallet_there");
+        grip_ = d.output("grip");
+        pallet_full_ = d.output("pallet_full");
+        pallet_x_ =
+            d.parameter("pallet_x", {.value = 260, .minimum = 150, .maximum = 300, .unit = "mm", .doc = "its corner in the machine"});
+        pallet_y_ = d.parameter("pallet_y", {.value = 130, .minimum = 50, .maximum = 200, .unit = "mm", .doc = "likewise"});
+        pallet_turned_ =
+            d.parameter("pallet_turned", {.value = 15, .minimum = -30, .maximum = 30, .unit = "deg", .doc = "counter-clockwise"});
+        speed_ = d.parameter("speed",
+                             {.value = 90, .minimum = 1, .maximum = 100, .unit = "%", .doc = "of the joints, between chute and pallet"});
+        d.operator_switch("works", works_, {.doc = "boxes are stacked; a stop and an error switch it off"});
+        d.monitor("box", box_, "", "the next one on this pallet");
+        d.monitor("stacked", stacked_, "", "since start");
+        d.monitor("pallets", pallets_, "", "filled");
+        d.monitor("error", error_, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
+        d.block("over_pallet", over_pallet_);
+        d.block("down", down_);
+        d.alarm(0, Reaction::warn, "The arm was stopped on its way and waits for a person", "机械臂中途停止，等待人工操作",
+                "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then switch "
+                "`works` on: it goes up first, and lays down what it "
+                "holds where it was meant to go");
+        d.task<&Palletizer::scan>("main");
+    }
+
+    void start() override {
+        // The gripper stays as it is: what hangs in it would fall.
+        stopped_ = false;
+        works_ = true;
+        enter(Step::raise);
+        for (auto& home : homes_) home.Execute = false;
+        enable_.Execute = false;
+    }
+
+    void scan(TaskContext& ctx) {
+        for (auto* group :
+             {&power_.AxesGroup, &enable_.AxesGroup, &status_.AxesGroup, &place_.AxesGroup, &raise_.AxesGroup, &tool_.AxesGroup,
+              &pallet_.AxesGroup, &over_chute_.AxesGroup, &onto_box_.AxesGroup, &off_chute_.AxesGroup, &gripping_.AxesGroup,
+              &over_pallet_.AxesGroup, &beside_.AxesGroup, &down_.AxesGroup, &off_pallet_.AxesGroup, &letting_go_.AxesGroup})
+            *group = arm_;
+        const bool ready = power(ctx);
+        if (works_) stopped_ = false;
+        describe(ctx);
+        move(ctx, ready && (works_ || under_way()));
+        ctx.set(grip_, holds_);
+        ctx.set(pallet_full_, step_ == Step::change_pallet);
+        ctx.alarm(0, stopped_);
+    }
+
+private:
+    /// All that has to be so before anything moves.
+    bool power(TaskContext& ctx) {
+        power_.Enable = status_.Enable = place_.Enable = true;
+        power_(ctx);
+        bool homed = true;
+        for (std::size_t i = 0; i < joints; ++i) {
+            homes_[i].Axis = axes_[i];
+            homes_[i].Execute = power_.Status && !ctx.view(axes_[i])->homed;
+            homes_[i](ctx);
+            homed = homed && ctx.view(axes_[i])->homed && !homes_[i].Busy;
+        }
+        enable_.Execute = power_.Status && homed;
+        enable_(ctx);
+        status_(ctx);
+        place_.CoordSystem = mcACS;
+        place_(ctx);
+        return power_.Status && homed && place_.Valid && (status_.GroupStandby || status_.GroupMoving);
+    }
+
+    /// Where everything goes. Told in each scan; a command keeps what stood here at its edge.
+    void describe(TaskContext& ctx) {
+        // The lift alone, whatever is below it.
+        raise_.CoordSystem = mcACS;
+        if (!begun_) raise_.Distance.A.Axes = {0, 0, std::max(-place_.Position.A.Axes[2], 0.0), 0};
+        raise_.Velocity = 200;
+        tool_.ToolNumber = 1;
+        pallet_.CoordSystem = mcPCS;
+        pallet_.CoordTransform = {
+            .X = ctx.get(pallet_x_), .Y = ctx.get(pallet_y_), .Z = pallet_height, .RZ = ctx.get(pallet_turned_) * degree};
+
+        for (auto* direct : {&over_chute_, &over_pallet_}) direct->Velocity = 300 * ctx.get(speed_) / 100;  // deg/s: of the joints together
+        over_chute_.CoordSystem = onto_box_.CoordSystem = off_chute_.CoordSystem = mcMCS;
+        over_chute_.Position.C.Tcp = off_chute_.Position.C.Tcp = {.X = chute_x, .Y = chute_y, .Z = chute_top + high};
+        onto_box_.Position.C.Tcp = {.X = chute_x, .Y = chute_y, .Z = chute_top};
+        gripping_.Duration = 150ms;
+
+        over_pallet_.CoordSystem = beside_.CoordSystem = down_.CoordSystem = off_pallet_.CoordSystem = mcPCS;
+        auto there = place_of(box_);
+        down_.Position.C.Tcp = there;
+        down_.Position.C.Tcp.Z += 0.5;  // it falls the last half millimetre
+        there.X += aslant, there.Y += aslant;
+        there.Z += near_by;
+        beside_.Position.C.Tcp = there;
+        there.Z += high - near_by;
+        over_pallet_.Position.C.Tcp = off_pallet_.Position.C.Tcp = there;
+        letting_go_.Duration = 120ms;
+
+        for (auto* move : {&onto_box_, &off_chute_, &beside_, &down_, &off_pallet_}) move->BufferMode = mcBuffered;
+        gripping_.BufferMode = letting_go_.BufferMode = mcBuffered;
+        // From the slanting way into the one down there is a corner in the air: on a curve.
+        down_.BufferMode = mcBlendingLow;
+        down_.TransitionMode = mcTMCornerDistance;
+        down_.TransitionParameter.Parameter[0] = 8;
+        onto_box_.Velocity = down_.Velocity = 150;
+    }
+
+    void enter(Step step) {
+        step_ = step;
+        fresh_ = true;
+        begun_ = false;
+    }
+
+    void move(TaskContext& ctx, bool ready) {
+        if (!fresh_ && ready) begun_ = true;
+        fresh_ = false;
+        raise_.Execute = begun_ && step_ == Step::raise;
+        // What is accepted from now on has this tool and this frame.
+        tool_.Execute = pallet_.Execute = begun_ && step_ == Step::prepare;
+        // Each of these is a row of commands that the group keeps in its queue.
+        over_chute_.Execute = onto_box_.Execute = gripping_.Execute = off_chute_.Execute = begun_ && step_ == Step::take;
+        over_pallet_.Execute = beside_.Execute = down_.Execute = letting_go_.Execute = off_pallet_.Execute = begun_ && step_ == Step::stack;
+
+        raise_(ctx);
+        tool_(ctx);
+        pallet_(ctx);
+        over_chute_(ctx);
+        onto_box_(ctx);
+        gripping_(ctx);
+        off_chute_(ctx);
+        over_pallet_(ctx);
+        beside_(ctx);
+        down_(ctx);
+        letting_go_(ctx);
+        off_pallet_(ctx);
+        next(ctx);
+    }
+
+    /// A round that has begun is ended: no box hangs in the air because somebody switches `works` off.
+    [[nodiscard]] bool under_way() const { return step_ == Step::take || step_ == Step::stack; }
+    /// One that has ended otherwise than Done ends the round. `error` says which ErrorID it was; 0: somebody else's command, or a person, aborted it.
+    [[nodiscard]] bool broken() {
+        bool over = false;
+        const auto look = [&](const auto&... block) {
+            const auto one = [&](const auto& b) {
+                if (over || !(b.Error || b.CommandAborted)) return;
+                over = true;
+                error_ = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
+            };
+            (one(block), ...);
+        };
+        look(raise_, pallet_, over_chute_, onto_box_, gripping_, off_chute_, over_pallet_, beside_, down_, letting_go_, off_pallet_);
+        if (tool_.Error) over = true, error_ = static_cast<std::int64_t>(tool_.ErrorID);
+        return over;
+    }
+
+    void next(TaskContext& ctx) {
+        exchange_.IN = step_ == Step::change_pallet && ctx.get(pallet_there_) && works_;
+        exchange_.PT = 1s;
+        exchange_(ctx);
+        if (begun_ && broken()) {
+            if (!carries_) holds_ = false;
+            works_ = false;
+            stopped_ = true;
+            return enter(Step::raise);
+        }
+        switch (step_) {
+            case Step::raise:
+                if (raise_.Done) enter(Step::prepare);
+                break;
+            case Step::prepare:
+                if (tool_.Done && pallet_.Done) enter(carries_ ? Step::stack : Step::wait);
+                break;
+            case Step::wait:
+                if (works_ && ctx.get(box_there_)) enter(Step::take);
+                break;
+            case Step::take:
+                if (onto_box_.Done) holds_ = true;
+                if (gripping_.Done) carries_ = true;
+                if (off_chute_.Done) enter(Step::stack);
+                break;
+            case Step::stack:
+                if (down_.Done && carries_) {
+                    holds_ = carries_ = false;
+                    ++box_, ++stacked_;
+                }
+                if (off_pallet_.Done) enter(box_ < layers * boxes_of_layer ? Step::wait : Step::change_pallet);
+                break;
+            case Step::change_pallet:
+                if (!exchange_.Q) break;
+                ++pallets_;
+                box_ = 0;
+                enter(Step::prepare);  // the next one may stand somewhere else
+                break;
+        }
+    }
+};
+
+}  // namespace
+
+TAKTWERK_PROGRAM(Palletizer)
