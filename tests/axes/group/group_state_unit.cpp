@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "axes/group/axis_group.hpp"  // in front of the states' bare names: files of a binary compile together
+
 namespace taktwerk::axes {
 namespace {
 
