@@ -51,7 +51,7 @@ inline void expect_near_least_time(const std::string& name, const TimedCurve& cu
     ASSERT_TRUE(plan.found) << name;
     const char* factor = std::getenv("TAKTWERK_SOAK_FACTOR");
     const bool long_run = factor != nullptr;
-    const int cells = long_run ? 4000 : 400;
+    const int cells = long_run ? 2000 : 400;
     double least = 1e300;
     using Beginning = LeastTimeOracle::Beginning;
     const std::vector<Beginning> beginnings =
