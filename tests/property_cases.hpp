@@ -2,6 +2,7 @@
 // How many cases a property test draws: quick by default, more in a long run (`./dev soak`).
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 
 namespace taktwerk {
@@ -12,6 +13,13 @@ namespace taktwerk {
     const char* factor = std::getenv("TAKTWERK_SOAK_FACTOR");
     const unsigned long times = factor != nullptr ? std::strtoul(factor, nullptr, 10) : 1;
     return usual * (times > 0 ? times : 1);
+}
+
+/// Seed of the first program that a campaign of programs draws: TAKTWERK_PROGRAMS_FIRST from the environment (1 when it is not set). So a long campaign
+/// goes in parts, and each part's result stays.
+[[nodiscard]] inline std::uint64_t first_program() {
+    const char* first = std::getenv("TAKTWERK_PROGRAMS_FIRST");
+    return first != nullptr ? std::strtoull(first, nullptr, 10) : 1;
 }
 
 }  // namespace taktwerk

@@ -439,8 +439,8 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
             }
             outcome.settled = gap + decrement_ < settled_gap;
             // Far from the central path (a step promises much) mu waits for it.
-            const double wanted = gap * (step > 0.9 ? 0.1 : step > 0.5 ? 0.3 : step > 0.2 ? 0.6 : 1.0);
-            mu = std::max({wanted, std::min(0.3 * decrement_, mu * sides), 0.1 * settled_gap}) / sides;
+            const double aim = gap * (step > 0.9 ? 0.1 : step > 0.5 ? 0.3 : step > 0.2 ? 0.6 : 1.0);
+            mu = std::max({aim, std::min(0.3 * decrement_, mu * sides), 0.1 * settled_gap}) / sides;
         }
     }
     finish();

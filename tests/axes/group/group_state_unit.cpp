@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "axes/group/axis_group.hpp"
+
 namespace taktwerk::axes::test {
 namespace {
 

@@ -68,6 +68,33 @@ TEST(Blend, ArcMeetsLineWithItsCurvature) {
     expect_smooth(b->curve.at(b->curve.length()), arc.at(b->behind));
 }
 
+// Towards an arc that bends away from the corner and towards one that bends on: what a line would need is too long or too short, and is corrected.
+TEST(Blend, DeviationHoldsBesideArcsOfBothSenses) {
+    for (const double sense : {1.0, -1.0})
+        for (const double radius : {5.0, 20.0, 50.0}) {
+            const PathElement arc = PathElement::arc(at(0, sense * radius), at(0, -sense * radius), at(radius, 0), at(0, 0), 1.5);
+
+            const auto b =
+                blend(PathElement::line(at(-100, 30), at(0, 0)), arc, {BlendRule::corner_deviation, 0.05 * radius}, 50, arc.length() / 2);
+
+            ASSERT_TRUE(b) << sense << ' ' << radius;
+            EXPECT_LE(b->deviation, 0.05 * radius * (1 + 1e-9)) << sense << ' ' << radius;
+        }
+}
+
+// 160 degrees are the sharpest corner that is passed on a curve (docs/motion/path.md).
+TEST(Blend, ACornerNearAReversalHasNoCurve) {
+    const auto turned = [](double degrees) {
+        const double angle = degrees * 3.14159265358979 / 180;
+        return blend(along_x, PathElement::line(at(0, 0), at(100 * std::cos(angle), 100 * std::sin(angle))),
+                     {BlendRule::corner_distance, 10}, 50, 50)
+            .has_value();
+    };
+    EXPECT_TRUE(turned(155));
+    EXPECT_FALSE(turned(165));
+    EXPECT_FALSE(turned(-170));
+}
+
 TEST(Blend, ReversalNoRoomAndNoRuleGiveNothing) {
     const PathElement back = PathElement::line(at(0, 0), at(-100, 0));
 

@@ -84,6 +84,17 @@ TEST(PathChart, AngularDerivativesThroughABlend) {
     }
 }
 
+// A move that begins at the same place, but as the tool does not stand there, would make it leap.
+TEST(PathChart, AMoveThatBeginsTurnedOtherwiseIsAGap) {
+    const Quaterniond a(AngleAxisd(0.3, Vector3d::UnitX())), b = a * Quaterniond(AngleAxisd(1.5, Vector3d::UnitZ()));
+    const Quaterniond elsewhere = b * Quaterniond(AngleAxisd(1e-3, Vector3d::UnitX()));
+    Path path;
+    ASSERT_TRUE(path.append(turning_line({0, 0, 0}, {100, 0, 0}, a, b), {}).ok());
+
+    EXPECT_EQ(path.append(turning_line({100, 0, 0}, {100, 80, 0}, elsewhere, a), {}).error().code, "path.gap");
+    EXPECT_TRUE(path.append(turning_line({100, 0, 0}, {100, 80, 0}, b, a), {}).ok());
+}
+
 TEST(PathChart, RotationBetweenTakesTheShortWay) {
     const Quaterniond a(AngleAxisd(0.5, Vector3d::UnitX()));
     const Quaterniond b = a * Quaterniond(AngleAxisd(1.5 * std::numbers::pi, Vector3d::UnitZ()));

@@ -52,6 +52,32 @@ TEST(Path, HalfOfAMoveIsLeftToTheNextBlend) {
     EXPECT_NEAR((path.section_at(path.length()).at(path.length()).at - at(20, 10)).norm(), 0, 1e-12);
 }
 
+// Also of a short move behind a long one.
+TEST(Path, ACurveTakesHalfOfTheNextMoveAtMost) {
+    Path path;
+    ASSERT_TRUE(path.append(line(at(0, 0), at(100, 0)), {}).ok());
+    EXPECT_EQ(*path.append(line(at(100, 0), at(100, 10)), {BlendRule::corner_distance, 8}), PathJoint::cut);
+
+    EXPECT_NEAR(path.sections()[0].length, 95, 1e-12);
+    EXPECT_NEAR(path.sections()[2].from, 5, 1e-12);
+}
+
+// Whichever of the two moves is the slower one, in each of its numbers.
+TEST(Path, ACornerIsPassedAsTheSlowerOfBothWouldBe) {
+    PathMove one = line(at(0, 0), at(100, 0)), other = line(at(100, 0), at(100, 50));
+    one.feed = {100, 1000, 800, 9000};
+    other.feed = {50, 2000, 700, 10'000};
+    Path path;
+    ASSERT_TRUE(path.append(one, {}).ok());
+    ASSERT_EQ(*path.append(other, {BlendRule::corner_distance, 10}), PathJoint::blend);
+
+    const PathFeed& corner = path.sections()[1].feed;
+    EXPECT_EQ(corner.velocity, 50);
+    EXPECT_EQ(corner.acceleration, 1000);
+    EXPECT_EQ(corner.deceleration, 700);
+    EXPECT_EQ(corner.jerk, 9000);
+}
+
 TEST(Path, WhatIsFrozenIsNotBent) {
     Path path;
     ASSERT_TRUE(path.append(line(at(0, 0), at(100, 0)), {}).ok());

@@ -18,6 +18,12 @@ public:
     [[nodiscard]] double between_decades(double from, double to) { return std::exp(uniform(std::log(from), std::log(to))); }
     [[nodiscard]] int whole(int from, int to) { return std::uniform_int_distribution<int>(from, to)(random_); }
 
+    /// From 1 to 200, as often as n^-1.5: 32 % have one move, 14 % more than 25, 3 % more than 100; 13.7 in the mean.
+    [[nodiscard]] int how_many() {
+        const double least = 1 / std::sqrt(201.0);
+        return static_cast<int>(std::pow(1 - uniform(0, 1) * (1 - least), -2));
+    }
+
     [[nodiscard]] PathVector direction(int dimensions) {
         PathVector d = PathVector::Zero();
         do {

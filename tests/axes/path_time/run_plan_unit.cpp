@@ -10,6 +10,7 @@
 #include "axes/planner/plan.hpp"
 #include "tests/axes/path_time/grid_oracle.hpp"
 #include "tests/axes/path_time/path_curve.hpp"
+#include "tests/axes/path_time/shown_use.hpp"
 
 namespace taktwerk::axes {
 namespace {
@@ -68,7 +69,7 @@ TEST(RunPlan, LongRunsKeepEveryLimitAndCostNoMore) {
             longest = std::max(longest, piece.duration);
             for (int k = 0; k <= 24; ++k) {
                 const PathMotion m = piece.at(piece.duration * k / 24);
-                use.widen(limit_use(curve.at(m.s, CurveSide::after), limits, 1, m));
+                use.widen(shown_use(curve.at(m.s, CurveSide::after), limits, 1, m));
                 if (piece.begin_time + piece.duration * k / 24 <= 0.1) after_a_tenth = m.velocity;
             }
         }
@@ -132,6 +133,14 @@ TEST(RunPlan, VelocityFactorScalesTheFeed) {
 
     const double best = plan_to_position({}, 1000, MotionLimits{50, 1000, 1000, 20000}).profile.duration();
     EXPECT_NEAR(plan.duration, best, 2e-3 * best);
+}
+
+// Where only the axes limit, less of the feed is no less of them.
+TEST(RunPlan, VelocityFactorLeavesTheAxesTheirs) {
+    const std::vector<PathAxisLimits> limits{{100, 1000, 20000}, {1, 1, 1}};
+    RunTask half;
+    half.velocity_factor = 0.5;
+    EXPECT_NEAR(plan_of(line_path(1000, 0), limits, half).duration, plan_of(line_path(1000, 0), limits).duration, 1e-3);
 }
 
 // Two corners with curves: with hardly any limit of jerk the time is that of the oracle without one. O-2.
