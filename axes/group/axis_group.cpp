@@ -187,12 +187,12 @@ void AxisGroup::settle() noexcept {
         queue_.record(interrupting_, Outcome::done);
         interrupting_ = 0;
         interrupted_ = true;
-        return tracking_.follows() ? void() : leave(GroupEvent::done);  // G-087
+        return tracking_.engaged() ? void() : leave(GroupEvent::done);  // G-087
     }
     if (interrupted_) return;
     for (;;) {
         if (!queue_.has_active()) {
-            if (queue_.waiting() == 0) return tracking_.follows() ? void() : leave(GroupEvent::done);  // G-019
+            if (queue_.waiting() == 0) return tracking_.engaged() ? void() : leave(GroupEvent::done);  // G-019
             queue_.activate_next();
             begun_ = false;
         }
@@ -224,7 +224,11 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         sent_ = 0;
     }
     send_waiting();
-    if (const auto said = run_.verdict(active.id)) return said;
+    if (const auto said = run_.verdict(active.id)) {
+        if (*said != ErrorId::none || !tracking_.active()) return said;
+        tracking_.engage();  // no way to go on the object, but one to it
+        return tracking_.in_sync() ? said : std::nullopt;
+    }
     if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
         begun_ = sent_ >= active.id;
         if (begun_) forget_path();

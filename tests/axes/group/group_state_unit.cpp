@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace taktwerk::axes {
+namespace taktwerk::axes::state_table {  // whose words would be ambiguous beside axis_group.hpp
 namespace {
 
 using enum GroupState;
@@ -54,4 +54,4 @@ TEST(GroupStates, EveryStateAnswersEveryEventAsTheDiagramDoes) {
 }
 
 }  // namespace
-}  // namespace taktwerk::axes
+}  // namespace taktwerk::axes::state_table
