@@ -222,12 +222,12 @@ void AxisGroup::settle() noexcept {
         queue_.record(interrupting_, Outcome::done);
         interrupting_ = 0;
         interrupted_ = true;
-        return tracking_.follows() ? void() : leave(GroupEvent::done);  // G-087
+        return tracking_.engaged() ? void() : leave(GroupEvent::done);  // G-087
     }
     if (interrupted_) return;
     for (;;) {
         if (!queue_.has_active()) {
-            if (queue_.waiting() == 0) return tracking_.follows() ? void() : leave(GroupEvent::done);  // G-019
+            if (queue_.waiting() == 0) return tracking_.engaged() ? void() : leave(GroupEvent::done);  // G-019
             queue_.activate_next();
             begun_ = false;
         }
@@ -262,7 +262,9 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
     if (const auto said = run_.verdict(active.id)) {
         if (goes_stored_path(command.kind) && said->line != 0) view_.path.place = *said;
         std::tie(view_.jog_end, view_.jog_end_place) = run_.jog_end(active.id);
-        return said->error;
+        if (said->error != ErrorId::none || !tracking_.active()) return said->error;
+        tracking_.engage();  // no way to go on the object, but one to it
+        return tracking_.in_sync() ? std::optional(said->error) : std::nullopt;
     }
     if (command.kind == GroupCommandKind::path) {  // it may begin with something else than motion
         begun_ = sent_ >= active.id;

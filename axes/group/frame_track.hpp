@@ -21,6 +21,7 @@ struct FrameTrack {
     SixNumbers origin{};       ///< of the belt or table, seen from the world
     SixNumbers object{};       ///< seen from the origin as it stands while the axis is at `reference`
     EndlessPlace reference{};  ///< of the axis
+    SixNumbers machine{};      ///< of a command in it: the machine's frame that it took, seen from the world
 
     [[nodiscard]] constexpr bool moves() const noexcept { return kind != Kind::none; }
     friend bool operator==(const FrameTrack&, const FrameTrack&) = default;

@@ -19,6 +19,7 @@ CommandPlace AxisGroup::place_of(const GroupCommand& command) const noexcept {
         }
     place.frame = frames.seen_from_machine(command.frame);
     place.track = frames.track_of(command.frame);
+    if (place.track.moves()) place.track.machine = frames.machine;
     return place;
 }
 
@@ -26,7 +27,7 @@ CommandPlace AxisGroup::place_of(const GroupCommand& command) const noexcept {
 Submitted AxisGroup::take_setting(const GroupCommand& wanted, Owner owner) noexcept {
     GroupCommand command = wanted;
     if (command.kind == GroupCommandKind::track_frame)
-        if (const auto error = tracking_.take(command.track, members_); error != ErrorId::none) return {0, error};
+        if (const auto error = tracking_.take(command.track, equipment_.frames, members_); error != ErrorId::none) return {0, error};
     const auto id = queue_.next_id();
     const bool later = command.execution != mcImmediately && (queue_.has_active() || queue_.waiting() > 0);
     if (!later) {

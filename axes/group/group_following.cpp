@@ -12,14 +12,14 @@ MotionState AxisGroup::state_of(std::size_t place) const noexcept {
     return run_.exists() ? run_.of(place) : MotionState{hold_[place], 0, 0};
 }
 
-/// The group moves in the frame, or a command in it waits.
+/// The group moves in the frame, or a command in it waits. The machine's own is in use with each that moves: they are seen from it.
 bool AxisGroup::uses_track(MC_CoordSystem frame) const noexcept {
     const auto track = equipment_.frames.track_of(frame);
-    if (!track.moves()) return false;
-    if (members_.led() && tracking_.is(track)) return true;
-    if (queue_.has_active() && queue_.active().place.track == track) return true;
+    const auto is_it = [&](const FrameTrack& used) { return used.moves() && (frame == mcMCS || used.serial == track.serial); };
+    if (members_.led() && tracking_.active() && is_it(tracking_.track())) return true;
+    if (queue_.has_active() && is_it(queue_.active().place.track)) return true;
     for (std::size_t i = 0; i < queue_.waiting(); ++i)
-        if (queue_.waiting_at(i).place.track == track) return true;
+        if (is_it(queue_.waiting_at(i).place.track)) return true;
     return false;
 }
 
@@ -36,17 +36,22 @@ ErrorId AxisGroup::refuse_track(const GroupCommand& command) const noexcept {
     // Who queues it behind the commands that use the frame bends none of them (G-085).
     const bool sets = command.kind == track_frame || command.kind == set_frame;
     if (sets) return command.execution == mcImmediately && uses_track(command.frame) ? ErrorId::frame_in_use : ErrorId::none;
-    const bool way = command.kind >= linear_absolute && command.kind <= circular_relative;
-    return way || !place_of(command).track.moves() ? ErrorId::none : ErrorId::not_supported;
+    const auto track = place_of(command).track;
+    if (!track.moves()) return ErrorId::none;
+    if (members_.contains(track.master)) return ErrorId::invalid_axis;  // it has become one since
+    return command.kind >= linear_absolute && command.kind <= circular_relative ? ErrorId::none : ErrorId::not_supported;
 }
 
 bool AxisGroup::change_frame(const FrameTrack& track, ErrorId& error) noexcept {
-    if (tracking_.active() && tracking_.is(track)) return true;
-    tracking_.release();
-    if (!tracking_.rests()) return false;
-    tracking_.clear();
-    if (!track.moves()) return true;
-    error = tracking_.prepare(track, equipment_.frames, members_);
+    if (tracking_.engaged() && tracking_.is(track)) {
+        tracking_.plan_anew(members_);
+    } else {
+        tracking_.release();
+        if (!tracking_.rests()) return false;
+        tracking_.clear();
+        if (!track.moves()) return true;
+        error = tracking_.prepare(track, members_);
+    }
     still_ = members_.set_positions();
     return true;
 }

@@ -286,7 +286,10 @@ void AxisGroup::halt() noexcept {
 void AxisGroup::let_go() noexcept {
     lock_ = 0;
     if (members_.led()) {
+        // What stops it already goes on doing so; what waits behind that, or for a continue, is nobody's any more.
+        if (interrupting_ != 0) abort_all();
         halt();
+        queue_.finish_waiting(Outcome::aborted);
         tracking_.release();
     } else {
         abort_all();

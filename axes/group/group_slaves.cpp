@@ -6,8 +6,8 @@
 namespace taktwerk::axes {
 namespace {
 
-/// Positions of a slave that does not turn without an end: its own numbers.
-constexpr SlaveFrame plain{0, 1};
+/// A slave's own place: no new number for it (MC_SetPosition, homing) moves it.
+MasterTrack::Reading reading_of(const Axis& axis) noexcept { return axis.as_master(mcSetValue); }
 
 FollowerLimits limits_of(const Axis& axis, const FollowPath& wanted) noexcept {
     const auto& limits = axis.config().limits;
@@ -37,9 +37,10 @@ ErrorId GroupSlaves::take(const FollowPath& wanted, const GroupMembers& members,
     if (free == slaves_.end()) return ErrorId::not_supported;
     const auto given = axis.submit({.kind = CommandKind::external, .instance = wanted.instance}, owner);
     if (given.error != ErrorId::none) return given.error;
-    *free = {wanted.slave, given.id, {}};
+    const auto slave = reading_of(axis);
+    *free = {wanted.slave, given.id, {}, slave.motion};
     GearLine line;
-    (void)line.set({wanted.numerator, wanted.denominator}, 1, 1, gone_.place, plain.place(axis.view().set_position));
+    (void)line.set({wanted.numerator, wanted.denominator}, 1, 1, gone_.place, slave.motion.place);
     free->follower.begin(line, RunDown::velocity, limits_of(axis, wanted));
     return ErrorId::none;
 }
@@ -62,9 +63,16 @@ void GroupSlaves::step(std::uint64_t run, const MotionState& along, Duration per
             one = {};
             continue;
         }
-        if (view.active != one.id) continue;
-        const auto next = one.follower.step(gone_, {}, {view.set_position, view.set_velocity, view.set_acceleration}, plain, period);
-        (void)axis.set(SetpointFeed{next.position, next.velocity, next.acceleration}, view.owner);  // refused, it ends the command
+        const auto slave = reading_of(axis);
+        if (view.active != one.id) {
+            one.given = slave.motion;
+            continue;
+        }
+        const SlaveFrame frame{slave.motion.place.feeds, slave.feed};
+        const auto next = one.follower.step(gone_, {}, {frame.local(one.given.place), one.given.velocity, one.given.acceleration}, frame, period);
+        one.given = {frame.place(next.position), next.velocity, next.acceleration};
+        const double place = view.set_position + (next.position - slave.motion.place.local);
+        (void)axis.set(SetpointFeed{place, next.velocity, next.acceleration}, view.owner);  // refused, it ends the command
     }
 }
 

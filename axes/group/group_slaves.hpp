@@ -32,6 +32,7 @@ private:
         AxisRef axis{};
         CommandId id = 0;
         Follower follower;
+        EndlessMotion given{};  // its last set-point; what is superimposed comes on top
     };
     std::span<Axis> axes_;
     std::array<One, most> slaves_{};

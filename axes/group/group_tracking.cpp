@@ -19,6 +19,8 @@ namespace {
 constexpr double usable_share = 0.99;
 constexpr double digits = 1e-9, slack = 1e-6, jerk_slack = 1e-3;
 constexpr double endless = 1e9;
+/// Of a place, that its sums cost.
+constexpr double last_digits = 1e-15;
 
 struct Bounds {
     UsableLimits limits;
@@ -40,6 +42,15 @@ double rest_of(const MotionState& at, const UsableLimits& limits) noexcept {
     const double a = limits.acceleration, j = limits.jerk;
     const double braking = speed * j >= a * a ? speed * speed / (2 * a) + speed * a / (2 * j) : speed * std::sqrt(speed / j);
     return at.position + sense * (until + braking);
+}
+
+/// From one set-point to the next: place, velocity and acceleration are of one motion. Of what is measured the velocity is held to the acceleration.
+bool joins(const MotionState& from, const MotionState& next, const UsableLimits& most, bool planned, double t, double far) noexcept {
+    const double jerk = planned ? most.jerk : 2 * most.acceleration / t;
+    const double way = next.position - from.position, faster = next.velocity - from.velocity;
+    return std::abs(next.acceleration - from.acceleration) <= jerk * t * (1 + jerk_slack) + digits &&
+           std::abs(faster) <= most.acceleration * t * (1 + digits) && std::abs(way) <= most.velocity * t * (1 + digits) + digits &&
+           std::abs(way - t * (next.velocity + from.velocity) / 2) <= jerk * t * t * t / 2 + digits + far;
 }
 
 ToolMotion at_rest(const Kinematics& arm, const JointVector& members, const Pose& tool) noexcept {
@@ -87,6 +98,17 @@ namespace {
 /// u of a table's axis in a turn.
 double turn_of(const Axis& axis) noexcept { return axis.config().modulo; }
 
+/// A tool that is turned about less than the table turns about would slip on it.
+bool turns_with(const Kinematics& arm, const Conveyance& frame) noexcept {
+    if (!frame.turns) return true;
+    constexpr double parallel = 1e-6;  // rad
+    const auto which = arm.commands();
+    const Eigen::Vector3d about = orientation_of(arm.base()).conjugate() * frame.axis;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (!which[3 + i] && std::abs(about[static_cast<Eigen::Index>(i)]) > parallel) return false;
+    return true;
+}
+
 MasterTrack::Reading reading_of(const Axis& axis) noexcept { return axis.as_master(axis.config().encoder ? mcActualValue : mcSetValue); }
 
 /// Where it will be one period on, when the set-points of this cycle act. A set-point goes on with its acceleration; what is measured has been
@@ -104,11 +126,13 @@ std::optional<EndlessMotion> next_of(MasterTrack& track, const Axis& axis, Insta
 
 }  // namespace
 
-ErrorId GroupTracking::take(FrameTrack& track, const GroupMembers& members) noexcept {
+ErrorId GroupTracking::take(FrameTrack& track, const GroupFrames& frames, const GroupMembers& members) noexcept {
     if (track.master.index >= axes_.size()) return ErrorId::invalid_axis;
     if (inside_->arm == nullptr) return ErrorId::no_kinematics;
     if (members.contains(track.master)) return ErrorId::invalid_axis;
     if (track.kind == FrameTrack::Kind::table && !(turn_of(axes_[track.master.index]) > 0)) return ErrorId::not_supported;
+    if (!turns_with(*inside_->arm, conveyance_of(track, pose_of_numbers(frames.machine), turn_of(axes_[track.master.index]))))
+        return ErrorId::not_supported;
     const auto reading = reading_of(axes_[track.master.index]);
     if (!reading.usable) return ErrorId::frame_lost;
     track.reference = reading.motion.place;
@@ -137,29 +161,37 @@ void GroupTracking::watch(GroupFrames& frames, Instant now, Duration period) noe
     if (axis.view().state != AxisState::ErrorStop) in.master = next_of(master_, axis, now, seconds);
 }
 
-ErrorId GroupTracking::prepare(const FrameTrack& track, const GroupFrames& frames, const GroupMembers& members) noexcept {
+ErrorId GroupTracking::prepare(const FrameTrack& track, const GroupMembers& members) noexcept {
     auto& in = *inside_;
     const Axis& axis = axes_[track.master.index];
     const auto reading = reading_of(axis);
     if (!reading.usable || axis.view().state == AxisState::ErrorStop) return ErrorId::frame_lost;
+    const auto frame = conveyance_of(track, pose_of_numbers(track.machine), turn_of(axis));
+    if (!turns_with(*in.arm, frame)) return ErrorId::not_supported;  // the machine's frame has been turned since
     clear();
     track_ = track;
     feed_ = reading.feed;
     for (std::size_t i = 0; i < product_frames; ++i)  // its filter has settled already
         if (in.products[i].serial == track.serial) master_ = in.products[i].master;
-    begun_at_ = way(track.reference, reading.motion.place, feed_);
-    way_ = {begun_at_, 0, 0};
-    const Pose machine = pose_of_numbers(frames.machine);
-    planned_ = seen_from(machine, object_at(track, begun_at_, turn_of(axis)));
-    in.frame = conveyance_of(track, machine, turn_of(axis));
+    way_ = {way(track.reference, reading.motion.place, feed_), 0, 0};
+    in.frame = frame;
     const auto at = members.set_positions();
-    for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = at[i];
     for (std::size_t i = 0; i < most_members; ++i) states_[i] = {at[i], 0, 0};
-    in.still = at_rest(*in.arm, at, Pose{});
+    plan_anew(members);
     in.out = -std::numeric_limits<double>::infinity();
     phase_ = Phase::prepared;
     see_room(members);
     return ErrorId::none;
+}
+
+/// What moves on the frame stands: nothing that is given changes by this.
+void GroupTracking::plan_anew(const GroupMembers& members) noexcept {
+    auto& in = *inside_;
+    begun_at_ = way_.position;
+    planned_ = seen_from(pose_of_numbers(track_.machine), object_at(track_, begun_at_, turn_of(axes_[track_.master.index])));
+    const auto at = members.set_positions();
+    for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = at[i];
+    in.still = at_rest(*in.arm, at, Pose{});
 }
 
 void GroupTracking::engage() noexcept {
@@ -248,6 +280,15 @@ MotionState GroupTracking::come_nearer(const MotionState& goal, Duration cycle) 
     return difference_.finished() ? MotionState{} : next;
 }
 
+/// It is not where its velocity has brought it: its zero was changed, or its drive was switched on where it was not thought to be. Of what is measured
+/// already the filter makes a velocity, which no member could take.
+bool GroupTracking::jumps(const MotionState& next, double period) const noexcept {
+    const double mean = period * (next.velocity + way_.velocity) / 2, far = last_digits * std::abs(next.position);
+    const double most = inside_->planned ? rest_.jerk * period * period * period : rest_.acceleration / (1 - path_share) * period * period;
+    const double faster = inside_->planned ? 0 : std::abs(next.velocity - way_.velocity);
+    return std::abs(next.position - way_.position - mean) > most + digits + far || faster > rest_.acceleration / (1 - path_share) * period;
+}
+
 void GroupTracking::follow(double period, Duration cycle) noexcept {
     auto& in = *inside_;
     const auto let_go = [&](ErrorId why) {
@@ -268,6 +309,7 @@ void GroupTracking::follow(double period, Duration cycle) noexcept {
         const bool harder = in.planned && (bend > rest_.jerk * (1 + slack) + digits || torn > rest_.jerk * period * period / 2 + digits ||
                                            std::abs(next.acceleration) > rest_.acceleration * (1 + slack));
         if (harder) let_go(ErrorId::frame_too_fast);
+        else if (jumps(next, period)) let_go(ErrorId::frame_lost);
         else way_ = next;
     }
     if (phase_ == Phase::following) return;
@@ -322,9 +364,7 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
         next[i] = {stand.axes[i], d.of[0][i], d.of[1][i]};
         const auto bounds = bounds_of(members.axis(i));
         const double rests = rest_of(next[i], bounds.limits);
-        const double bend = std::abs(next[i].acceleration - states_[i].acceleration);
-        const bool smooth = !in.planned || bend <= bounds.limits.jerk * to_seconds(period) * (1 + jerk_slack) + digits;
-        const bool inside = smooth && std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
+        const bool inside = joins(states_[i], next[i], bounds.limits, in.planned, to_seconds(period), last_digits * std::abs(way_.position)) && std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
                             std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
                             (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
         if (!inside) return ErrorId::frame_limit;
@@ -336,8 +376,9 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
 }
 
 void GroupTracking::publish(GroupView& view) const noexcept {
-    view.track = {active() ? track_.master : AxisRef{}, in_sync(),
-                  phase_ == Phase::following ? -difference_.state().position * inside_->drag : 0};
+    const bool on = active();
+    view.track = {on ? track_.master : AxisRef{}, in_sync(), engaged() ? -difference_.state().position * inside_->drag : 0,
+                  on ? track_.serial : 0};
 }
 
 }  // namespace taktwerk::axes

@@ -33,13 +33,16 @@ public:
     GroupTracking(GroupTracking&&) noexcept;
     ~GroupTracking();
 
-    /// invalid_axis, no_kinematics, frame_lost, not_supported (a table whose axis has no turn: no modulo); else it fills reference and number.
-    [[nodiscard]] ErrorId take(FrameTrack& track, const GroupMembers& members) noexcept;
+    /// invalid_axis, no_kinematics, frame_lost, not_supported (a table whose axis has no turn: no modulo; one that turns about what the arm cannot);
+    /// else it fills reference and number.
+    [[nodiscard]] ErrorId take(FrameTrack& track, const GroupFrames& frames, const GroupMembers& members) noexcept;
     /// Each cycle: where the masters will be when the next set-points act; writes it into the products' frames.
     void watch(GroupFrames& frames, Instant now, Duration period) noexcept;
 
     /// The group stands at `at` and will go in this frame: its way begins here. False: its master is not there.
-    [[nodiscard]] ErrorId prepare(const FrameTrack& track, const GroupFrames& frames, const GroupMembers& members) noexcept;
+    [[nodiscard]] ErrorId prepare(const FrameTrack& track, const GroupMembers& members) noexcept;
+    /// Engaged, with no path under way: the next one is planned where the frame is now.
+    void plan_anew(const GroupMembers& members) noexcept;
     /// Joins it.
     void engage() noexcept;
     /// Lets it go: the frame's way comes to rest.
@@ -51,6 +54,8 @@ public:
     [[nodiscard]] const FrameTrack& track() const noexcept { return track_; }
     /// It will go on with the frame.
     [[nodiscard]] bool follows() const noexcept { return phase_ == Phase::prepared || phase_ == Phase::following; }
+    /// It goes with the frame, or comes up to it.
+    [[nodiscard]] bool engaged() const noexcept { return phase_ == Phase::following; }
     [[nodiscard]] bool rests() const noexcept { return phase_ == Phase::off || phase_ == Phase::resting; }
     [[nodiscard]] bool in_sync() const noexcept { return phase_ == Phase::following && !fresh_ && difference_.finished(); }
     /// Seen from the machine, as paths in it are planned.
@@ -78,6 +83,7 @@ private:
     [[nodiscard]] bool read(MasterTrack& track, AxisRef master, Instant now, Duration period) const noexcept;
     void follow(double period, Duration cycle) noexcept;
     [[nodiscard]] MotionState come_nearer(const MotionState& goal, Duration cycle) noexcept;
+    [[nodiscard]] bool jumps(const MotionState& next, double period) const noexcept;
     void see_room(const GroupMembers& members) noexcept;
     [[nodiscard]] bool in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members) noexcept;
 

@@ -21,6 +21,7 @@ struct TrackView {
     AxisRef axis{};        ///< whose way it goes with; invalid: it does not
     bool in_sync = false;  ///< it has come up to it
     double lag = 0;        ///< u of the tool's point that it is behind
+    std::uint32_t serial = 0;  ///< of the object (FrameTrack): two of one belt are two
 };
 
 /// An axis that follows the length of a path.

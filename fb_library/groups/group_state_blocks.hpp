@@ -58,9 +58,9 @@ struct MC_GroupReadMotionState : GroupReadBlock<MC_GroupReadMotionState> {
     static constexpr std::string_view summary = "Gives how the group moves along its path.";
     static consteval auto pins() {
         return pin_table(
-            grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::Tracking>("", "follows a moving frame: never yet"),
-            out<&Self::InSync>("", "with a moving frame: never yet"), out<&Self::InPosition>("", "all members are at their set positions"),
-            out<&Self::Standstill>("", "the path velocity is zero, and no member moves by itself"),
+            grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::Tracking>("", "goes with a frame that moves, joins it, or leaves it"),
+            out<&Self::InSync>("", "with a frame that moves"), out<&Self::InPosition>("", "all members are at their set positions"),
+            out<&Self::Standstill>("", "the path velocity is zero, and no member moves; in sync: on the frame"),
             out<&Self::ConstantVelocity>("", "along the path"), out<&Self::Accelerating>("", "along the path"),
             out<&Self::Decelerating>("", "along the path"),
             out<&Self::ActiveCommandID>("", "of the command that controls the group; 0 = none"));
@@ -69,7 +69,9 @@ struct MC_GroupReadMotionState : GroupReadBlock<MC_GroupReadMotionState> {
         InPosition = view.in_position;
         bool moves = view.path_velocity != 0 || view.path_acceleration != 0;
         for (const double velocity : view.set_velocity) moves = moves || velocity != 0;
-        Standstill = !moves;
+        Tracking = view.track.axis.valid();
+        InSync = view.track.in_sync;
+        Standstill = InSync ? view.path_velocity == 0 && view.path_acceleration == 0 : !moves;
         // A plan comes to its velocity as to a limit: what changes it by less than a twentieth in a second is constant.
         constexpr double constant_share = 0.05;  // 1/s
         ConstantVelocity = view.path_velocity != 0 && std::abs(view.path_acceleration) <= constant_share * view.path_velocity;
@@ -79,7 +81,7 @@ struct MC_GroupReadMotionState : GroupReadBlock<MC_GroupReadMotionState> {
         return Reading::valid();
     }
     void clear() noexcept {
-        InPosition = Standstill = ConstantVelocity = Accelerating = Decelerating = false;
+        Tracking = InSync = InPosition = Standstill = ConstantVelocity = Accelerating = Decelerating = false;
         ActiveCommandID = {};
     }
 };

@@ -69,6 +69,52 @@ TEST(GroupTrackingBlocks, APartIsPickedFromWhereABarrierSawIt) {
     EXPECT_NEAR(where.CoordTransform.X, 5 + 30 + then - latched, 1e-9);
 }
 
+// MC_GroupReadMotionState: Tracking, InSync, and Standstill, which is meant "relative to the active coordinate system".
+TEST(GroupTrackingBlocks, TheMotionStateSaysThatItGoesWithABelt) {
+    BeltPlc plc;
+    MC_TrackConveyorBelt track;
+    track.ConveyorBelt = BeltPlc::belt;
+    ASSERT_EQ(plc.carry_out(track), ErrorId::none);
+    MC_GroupReadMotionState how;
+    MC_MoveLinearAbsolute pick, away;
+    how.AxesGroup = pick.AxesGroup = away.AxesGroup = GroupPlc::group;
+    how.Enable = true;
+    pick.CoordSystem = mcPCS;
+    pick.Position.C.Tcp.Z = -3;
+    away.Position.A.Axes = {0, 0, 0};
+    pick.Velocity = away.Velocity = 50;
+    plc.program = [&](const MotionContext& ctx) {
+        pick(ctx);
+        away(ctx);
+        how(ctx);
+    };
+    plc.scan();
+    EXPECT_TRUE(how.Valid);
+    EXPECT_FALSE(how.Tracking);
+    EXPECT_TRUE(how.Standstill);
+    pick.Execute = true;
+    ASSERT_TRUE(plc.until([&] { return how.Tracking && !how.Standstill; }, 100));
+    EXPECT_FALSE(how.InSync) << "it still comes up to the belt";
+    ASSERT_TRUE(plc.until([&] { return pick.Done; }, 3000));
+    plc.run(2);
+    EXPECT_TRUE(how.Tracking);
+    EXPECT_TRUE(how.InSync);
+    EXPECT_TRUE(how.Standstill) << "on the belt";
+    EXPECT_NEAR(plc.rig.view().set_velocity[0], 20, 1e-9);
+    away.Execute = true;
+    plc.run(3);
+    EXPECT_TRUE(how.Tracking);
+    EXPECT_FALSE(how.InSync);
+    EXPECT_FALSE(how.Standstill);
+    ASSERT_TRUE(plc.until([&] { return away.Done; }, 3000));
+    plc.run(2);
+    EXPECT_FALSE(how.Tracking);
+    EXPECT_TRUE(how.Standstill);
+    how.Enable = false;
+    plc.scan();
+    EXPECT_FALSE(how.Standstill);
+}
+
 // G-085: behind the commands that use the frame another object may wait for its turn; at once it may not.
 TEST(GroupTrackingBlocks, AnotherObjectWaitsOrIsRefused) {
     BeltPlc plc;
