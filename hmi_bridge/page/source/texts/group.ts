@@ -60,7 +60,7 @@ export const group = {
     group_increment_none: ['as long as it is held', '按住期间持续'],
     group_jog_positive: ['Jog {direction} positive', '{direction} 正向点动'],
     group_jog_negative: ['Jog {direction} negative', '{direction} 负向点动'],
-    group_jog_speed: ['{percent} % ({velocity} {unit}/s)', '{percent} %({velocity} {unit}/s)'],
+    group_jog_speed: ['{percent} % ({velocity} {unit}/s)', '速度 {percent} %({velocity} {unit}/s)'],
     group_setup_limit: ['Set-up mode: the point of the tool moves at most {velocity} {unit}/s. This is no safety function.', '调试模式:工具点速度不超过 {velocity} {unit}/s。此功能不是安全功能。'],
     group_in_error: ['It is in an error: reset it first.', '轴组有故障:请先复位。'],
     group_needs_power: ['Not all of its axes have power.', '并非所有轴都已上电。'],
