@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "axes/group/jog_shape.hpp"
+#include "axes/group/motion_target.hpp"
 #include "axes/group/room_check.hpp"
 #include "axes/group/written_pose.hpp"
 #include "axes/path/arc.hpp"

@@ -99,8 +99,15 @@ void GroupDesk::look() noexcept {
 }
 
 void GroupDesk::look_at_use(const axes::GroupView& view, std::size_t place, SeenGroup& seen) noexcept {
-    const auto limits = axes::path_limits_of(body_.axes[view.members[place].index]);
+    const auto& axis = body_.axes[view.members[place].index];
+    const auto limits = axes::path_limits_of(axis);
     auto& before = accelerations_[static_cast<std::size_t>(&seen - seen_.data())][place];
+    // Without power its set-point is where the motor is: that begins and ends in a step, and uses no limit of anybody's path.
+    if (!axis.view().powered) {
+        before = 0;
+        seen.use[place] = {};
+        return;
+    }
     const double jerk = (view.set_acceleration[place] - before) / to_seconds(body_.config.cycle);
     before = view.set_acceleration[place];
     seen.use[place] = {part(view.set_velocity[place], limits.velocity), part(view.set_acceleration[place], limits.acceleration),

@@ -66,7 +66,8 @@ public:
     std::vector<Place> placed;  ///< mm: where the gripper opened with a part in it
     std::vector<double> bits;   ///< set positions of the seven, each cycle
     bool keep_bits = false;
-    std::function<void()> after;
+    double most_used = 0;  ///< of a joint's limits for velocity and acceleration, as people are told; 1 is the limit
+    double most_jerk = 0;  ///< likewise
 
     [[nodiscard]] const Place& tool() const { return tool_; }
     [[nodiscard]] bool clean() const {
@@ -100,7 +101,10 @@ private:
         const double period = to_seconds(m_.config().cycle);
         if (seen_) watch_gripper(flange, (tool_[1] - before[1]) / period, (belt_ - belt_before) / period);
         seen_ = true;
-        if (after) after();
+        for (const auto& use : m_.snapshot().groups[0].use) {
+            most_used = std::max({most_used, static_cast<double>(use.velocity), static_cast<double>(use.acceleration)});
+            most_jerk = std::max(most_jerk, static_cast<double>(use.jerk));
+        }
     }
     void watch_gripper(const Place& flange, double speed, double belt_speed) {
         const bool closed = m_.output("gripper");

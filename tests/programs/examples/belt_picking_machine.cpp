@@ -62,6 +62,30 @@ TEST(BeltPicking, PicksEachPartWhereTheBeltHasItAndFillsTheTray) {
     EXPECT_GT(eye.compared(), 30'000);
 }
 
+// While the arm goes down, grips and lifts: the parts stay where the belt has them. At 120 mm/s they come faster than the arm, and some pass by.
+TEST(BeltPicking, TheBeltMayChangeItsSpeedMeanwhile) {
+    ExampleMachine m{"five-drives", Events::left_out};
+    ASSERT_TRUE(m.up());
+    BeltEye eye{m};
+    std::mt19937 random{7};
+    double least = 1e9, most = 0;
+    for (int i = 0; i < 120; ++i) {
+        m.set_parameter("belt_speed", 20 + static_cast<double>(random() % 101));
+        m.run(1ms * (100 + random() % 800));
+    }
+    for (const auto& grip : eye.grips) {
+        EXPECT_TRUE(grip.lifted) << "part " << grip.part;
+        least = std::min(least, grip.belt);
+        most = std::max(most, grip.belt);
+    }
+    expect_on_parts(eye);
+    EXPECT_GE(eye.grips.size(), 5u);
+    EXPECT_GT(most - least, 20) << "mm/s";
+    EXPECT_EQ(m.alarms(), "");
+    EXPECT_EQ(m.variable("arm_failures"), 0);
+    EXPECT_TRUE(eye.clean()) << eye.report();
+}
+
 TEST(BeltPicking, GivesTheSameBitsEachTimeThroughAllFaults) {
     std::vector<double> bits[2];
     for (auto& once : bits) {
@@ -122,6 +146,10 @@ TEST_P(BeltPickingFault, NothingJumpsAndItPicksOn) {
     expect_on_parts(eye);
     EXPECT_EQ(m.alarms(), "");
     EXPECT_TRUE(eye.clean()) << eye.report();
+    // What a person is told of the limits is told of set-points: a motor that runs out without power breaks no limit of the path.
+    EXPECT_LE(eye.most_used, 1 + 1e-6);
+    EXPECT_LE(eye.most_jerk, 1 + 1e-3);
+    EXPECT_GT(eye.most_used, 0.1);
     expect_on_tray(eye.placed);
 }
 
