@@ -56,7 +56,7 @@ class DeltaPicker final : public Program {
     std::array<AxisRef, arms> axes_;
     AxisRef belt_;
     GroupRef delta_;
-    Input<bool> gripped_, tray_there_;
+    Input<bool> gripped_, tray_there_, go_on_;
     Output<bool> vacuum_, tray_full_;
     Parameter belt_speed_;
 
@@ -81,6 +81,7 @@ class DeltaPicker final : public Program {
     MC_MoveLinearAbsolute over_slot_, into_slot_, off_slot_;
     MC_GroupWaitTime letting_go_;
     TON exchange_;
+    R_TRIG pressed_;
 
     Step step_ = Step::raise;
     bool fresh_ = true;   ///< the first scan of a step: its blocks are called with Execute FALSE, so that the next one is an edge
@@ -101,6 +102,7 @@ public:
         delta_ = d.axis_group("delta");
         gripped_ = d.input("part_gripped");
         tray_there_ = d.input("tray_there");
+        go_on_ = d.input("go_on");
         vacuum_ = d.output("vacuum");
         tray_full_ = d.output("tray_full");
         belt_speed_ = d.parameter("belt_speed", {.value = 90, .minimum = 10, .maximum = 250, .unit = "mm/s", .doc = "of the parts"});
@@ -117,8 +119,8 @@ public:
         d.block("onto_part", onto_part_);
         d.block("into_slot", into_slot_);
         d.alarm(0, Reaction::warn, "The arm was stopped on its way and waits for a person", "机械臂中途停止，等待人工操作",
-                "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then switch "
-                "`picks` on: it goes straight up first");
+                "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then press `go_on` "
+                "(or switch `picks` on): it goes straight up first");
         d.alarm(1, Reaction::warn, "Parts go by without being picked", "工件未被拾取而通过", "lower belt_speed");
         d.task<&DeltaPicker::scan>("main");
     }
@@ -140,6 +142,9 @@ public:
               &over_slot_.AxesGroup, &into_slot_.AxesGroup, &off_slot_.AxesGroup, &letting_go_.AxesGroup})
             *group = delta_;
         const bool ready = power(ctx);
+        pressed_.CLK = ctx.get(go_on_);
+        pressed_(ctx);
+        if (pressed_.Q && !status_.GroupErrorStop) picks_ = true;
         if (picks_) stopped_ = false;
         run_belt(ctx, ready && picks_);
         watch_barrier(ctx);

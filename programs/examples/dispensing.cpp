@@ -41,7 +41,7 @@ class Dispensing final : public Program {
     std::array<AxisRef, members> axes_;
     AxisRef pump_;
     GroupRef gantry_;
-    Input<bool> cover_there_;
+    Input<bool> cover_there_, go_on_;
     Output<bool> valve_, cover_done_;
     Parameter speed_, bead_, corner_;
 
@@ -63,6 +63,7 @@ class Dispensing final : public Program {
     MC_Halt pump_halt_;
     MC_MoveLinearAbsolute leave_;
     TON exchange_;
+    R_TRIG pressed_;
 
     Step step_ = Step::raise;
     bool fresh_ = true;   ///< the first scan of a step: its blocks are called with Execute FALSE, so that the next one is an edge
@@ -80,6 +81,7 @@ public:
         pump_ = d.axis("pump");
         gantry_ = d.axis_group("gantry");
         cover_there_ = d.input("cover_there");
+        go_on_ = d.input("go_on");
         valve_ = d.output("valve");
         cover_done_ = d.output("cover_done");
         speed_ = d.parameter("speed", {.value = 120, .minimum = 5, .maximum = 300, .unit = "mm/s", .doc = "along the bead"});
@@ -96,8 +98,7 @@ public:
         d.alarm(0, Reaction::warn, "The bead or the way to it was broken off, and the gantry waits for a person",
                 "涂胶或其路径中断，龙门等待人工操作",
                 "remove the cause (alarms of its axes and of the bus name it), take the cover away if its bead is not whole, reset, then "
-                "switch `works` on: it goes up first and "
-                "begins with a new cover");
+                "press `go_on` (or switch `works` on): it goes up first and begins with a new cover");
         d.task<&Dispensing::scan>("main");
     }
 
@@ -116,6 +117,9 @@ public:
               &along_top_.AxesGroup, &down_left_.AxesGroup, &left_arc_.AxesGroup, &to_end_.AxesGroup, &leave_.AxesGroup})
             *group = gantry_;
         const bool ready = power(ctx);
+        pressed_.CLK = ctx.get(go_on_);
+        pressed_(ctx);
+        if (pressed_.Q && !status_.GroupErrorStop) works_ = true;
         if (works_) stopped_ = false;
         describe(ctx);
         move(ctx, ready && (works_ || under_way()));

@@ -53,7 +53,7 @@ class Palletizer final : public Program {
 
     std::array<AxisRef, joints> axes_;
     GroupRef arm_;
-    Input<bool> box_there_, pallet_there_;
+    Input<bool> box_there_, pallet_there_, go_on_;
     Output<bool> grip_, pallet_full_;
     Parameter pallet_x_, pallet_y_, pallet_turned_, speed_;
 
@@ -73,6 +73,7 @@ class Palletizer final : public Program {
     MC_MoveLinearAbsolute beside_, down_, off_pallet_;
     MC_GroupWaitTime letting_go_;
     TON exchange_;
+    R_TRIG pressed_;
 
     Step step_ = Step::raise;
     bool fresh_ = true;   ///< the first scan of a step: its blocks are called with Execute FALSE, so that the next one is an edge
@@ -90,6 +91,7 @@ public:
         arm_ = d.axis_group("arm");
         box_there_ = d.input("box_there");
         pallet_there_ = d.input("pallet_there");
+        go_on_ = d.input("go_on");
         grip_ = d.output("grip");
         pallet_full_ = d.output("pallet_full");
         pallet_x_ =
@@ -107,9 +109,8 @@ public:
         d.block("over_pallet", over_pallet_);
         d.block("down", down_);
         d.alarm(0, Reaction::warn, "The arm was stopped on its way and waits for a person", "机械臂中途停止，等待人工操作",
-                "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then switch "
-                "`works` on: it goes up first, and lays down what it "
-                "holds where it was meant to go");
+                "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then press `go_on` "
+                "(or switch `works` on): it goes up first, and lays down what it holds where it was meant to go");
         d.task<&Palletizer::scan>("main");
     }
 
@@ -129,6 +130,9 @@ public:
               &over_pallet_.AxesGroup, &beside_.AxesGroup, &down_.AxesGroup, &off_pallet_.AxesGroup, &letting_go_.AxesGroup})
             *group = arm_;
         const bool ready = power(ctx);
+        pressed_.CLK = ctx.get(go_on_);
+        pressed_(ctx);
+        if (pressed_.Q && !status_.GroupErrorStop) works_ = true;
         if (works_) stopped_ = false;
         describe(ctx);
         move(ctx, ready && (works_ || under_way()));
