@@ -44,6 +44,7 @@ struct SeenGroup {
     Along along;
 
     axes::GroupCommandKind active_kind = axes::GroupCommandKind::none;
+    axes::FrameTrack::Kind track = axes::FrameTrack::Kind::none;  ///< it goes with what moves, also with no command
     axes::CommandId active = 0;
     const void* block = nullptr;  ///< never followed
     std::uint8_t queued = 0;

@@ -319,6 +319,7 @@ void GroupTracking::follow(double period, Duration cycle) noexcept {
 }
 
 ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members, Duration period) noexcept {
+    if (phase_ == Phase::prepared) return ErrorId::none;  // it stands, however its members stand
     auto& in = *inside_;
     if (still != nullptr) in.still = *still;
     else in.still.velocity = in.still.acceleration = in.still.turning = in.still.turning_faster = Eigen::Vector3d::Zero();
@@ -340,9 +341,11 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
         next[i] = {stand.axes[i], d.of[0][i], d.of[1][i]};
         const auto bounds = bounds_of(members.axis(i));
         const double rests = rest_of(next[i], bounds.limits);
-        const bool inside = joins(states_[i], next[i], bounds.limits, in.planned, to_seconds(period), last_digits * std::abs(way_.position)) && std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
-                            std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
-                            (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
+        const bool inside =
+            joins(states_[i], next[i], bounds.limits, in.planned, to_seconds(period), last_digits * std::abs(way_.position)) &&
+            std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
+            std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
+            (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
         if (!inside) return ErrorId::frame_limit;
     }
     states_ = next;
@@ -353,7 +356,7 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
 void GroupTracking::publish(GroupView& view) const noexcept {
     const bool on = active();
     view.track = {on ? track_.master : AxisRef{}, in_sync(), engaged() ? -difference_.state().position * inside_->drag : 0,
-                  on ? track_.serial : 0};
+                  on ? track_.serial : 0, on ? track_.kind : FrameTrack::Kind::none};
 }
 
 }  // namespace taktwerk::axes
