@@ -48,6 +48,7 @@ struct SeenGroup {
     std::uint8_t jog_end_place = 0;             ///< JogEnd::member_limit: whose
 
     axes::GroupCommandKind active_kind = axes::GroupCommandKind::none;
+    axes::FrameTrack::Kind track = axes::FrameTrack::Kind::none;  ///< it goes with what moves, also with no command
     axes::CommandId active = 0;
     const void* block = nullptr;  ///< never followed
     std::uint8_t queued = 0;

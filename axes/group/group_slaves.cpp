@@ -69,7 +69,8 @@ void GroupSlaves::step(std::uint64_t run, const MotionState& along, Duration per
             continue;
         }
         const SlaveFrame frame{slave.motion.place.feeds, slave.feed};
-        const auto next = one.follower.step(gone_, {}, {frame.local(one.given.place), one.given.velocity, one.given.acceleration}, frame, period);
+        const auto next =
+            one.follower.step(gone_, {}, {frame.local(one.given.place), one.given.velocity, one.given.acceleration}, frame, period);
         one.given = {frame.place(next.position), next.velocity, next.acceleration};
         const double place = view.set_position + (next.position - slave.motion.place.local);
         (void)axis.set(SetpointFeed{place, next.velocity, next.acceleration}, view.owner);  // refused, it ends the command

@@ -343,6 +343,7 @@ bool GroupTracking::in_workspace(const std::array<MotionState, most_members>& ne
 }
 
 ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members, Duration period) noexcept {
+    if (phase_ == Phase::prepared) return ErrorId::none;  // it stands, however its members stand
     auto& in = *inside_;
     if (still != nullptr) in.still = *still;
     else in.still.velocity = in.still.acceleration = in.still.turning = in.still.turning_faster = Eigen::Vector3d::Zero();
@@ -364,9 +365,11 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
         next[i] = {stand.axes[i], d.of[0][i], d.of[1][i]};
         const auto bounds = bounds_of(members.axis(i));
         const double rests = rest_of(next[i], bounds.limits);
-        const bool inside = joins(states_[i], next[i], bounds.limits, in.planned, to_seconds(period), last_digits * std::abs(way_.position)) && std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
-                            std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
-                            (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
+        const bool inside =
+            joins(states_[i], next[i], bounds.limits, in.planned, to_seconds(period), last_digits * std::abs(way_.position)) &&
+            std::abs(next[i].velocity) <= bounds.limits.velocity * (1 + digits) &&
+            std::abs(next[i].acceleration) <= bounds.limits.acceleration * (1 + digits) &&
+            (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
         if (!inside) return ErrorId::frame_limit;
     }
     if (!in_workspace(next, members)) return ErrorId::frame_limit;
@@ -378,7 +381,7 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
 void GroupTracking::publish(GroupView& view) const noexcept {
     const bool on = active();
     view.track = {on ? track_.master : AxisRef{}, in_sync(), engaged() ? -difference_.state().position * inside_->drag : 0,
-                  on ? track_.serial : 0};
+                  on ? track_.serial : 0, on ? track_.kind : FrameTrack::Kind::none};
 }
 
 }  // namespace taktwerk::axes

@@ -18,10 +18,11 @@ enum class JogEnd : std::uint8_t { none, distance, member_limit, reach, singular
 
 /// Of a group on a frame that moves.
 struct TrackView {
-    AxisRef axis{};        ///< whose way it goes with; invalid: it does not
-    bool in_sync = false;  ///< it has come up to it
-    double lag = 0;        ///< u of the tool's point that it is behind
+    AxisRef axis{};            ///< whose way it goes with; invalid: it does not
+    bool in_sync = false;      ///< it has come up to it
+    double lag = 0;            ///< u of the tool's point that it is behind
     std::uint32_t serial = 0;  ///< of the object (FrameTrack): two of one belt are two
+    FrameTrack::Kind kind = FrameTrack::Kind::none;
 };
 
 /// An axis that follows the length of a path.

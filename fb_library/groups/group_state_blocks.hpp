@@ -57,13 +57,14 @@ struct MC_GroupReadMotionState : GroupReadBlock<MC_GroupReadMotionState> {
 
     static constexpr std::string_view summary = "Gives how the group moves along its path.";
     static consteval auto pins() {
-        return pin_table(
-            grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::Tracking>("", "goes with a frame that moves, joins it, or leaves it"),
-            out<&Self::InSync>("", "with a frame that moves"), out<&Self::InPosition>("", "all members are at their set positions"),
-            out<&Self::Standstill>("", "the path velocity is zero, and no member moves; in sync: on the frame"),
-            out<&Self::ConstantVelocity>("", "along the path"), out<&Self::Accelerating>("", "along the path"),
-            out<&Self::Decelerating>("", "along the path"),
-            out<&Self::ActiveCommandID>("", "of the command that controls the group; 0 = none"));
+        return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
+                         out<&Self::Tracking>("", "goes with a frame that moves, joins it, or leaves it"),
+                         out<&Self::InSync>("", "with a frame that moves"),
+                         out<&Self::InPosition>("", "all members are at their set positions"),
+                         out<&Self::Standstill>("", "the path velocity is zero, and no member moves; in sync: on the frame"),
+                         out<&Self::ConstantVelocity>("", "along the path"), out<&Self::Accelerating>("", "along the path"),
+                         out<&Self::Decelerating>("", "along the path"),
+                         out<&Self::ActiveCommandID>("", "of the command that controls the group; 0 = none"));
     }
     [[nodiscard]] Reading read_group(const axes::GroupView& view) noexcept {
         InPosition = view.in_position;

@@ -48,6 +48,17 @@ void fill_members(whole_group_v1_t& out, const SeenGroup& group, const runtime::
     out.member_count = static_cast<std::int32_t>(out.members.size());
 }
 
+/// With no command left it may still stand on a belt, which takes it along when it starts.
+std::string_view what_moves(const SeenGroup& group) {
+    if (group.active != 0) return name(group.active_kind);
+    switch (group.track) {
+        case axes::FrameTrack::Kind::belt: return "MC_TrackConveyorBelt";
+        case axes::FrameTrack::Kind::table: return "MC_TrackRotaryTable";
+        case axes::FrameTrack::Kind::none: break;
+    }
+    return {};
+}
+
 void fill_way(whole_group_v1_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
     out.tool_known = group.tool.known;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -65,7 +76,7 @@ void fill_way(whole_group_v1_t& out, const SeenGroup& group, const runtime::Mach
                               : axes::AxisRef{};
     put_text(out.limiting_axis, limiting.valid() && limiting.index < layout.axes.size() ? std::string_view(layout.axes[limiting.index].name)
                                                                                         : std::string_view{});
-    put_text(out.command, group.active != 0 ? name(group.active_kind) : std::string_view{});
+    put_text(out.command, what_moves(group));
     put_text(out.block, layout.block_at(group.block));
     out.command_id = group.active;
     out.progress = along.progress;

@@ -151,6 +151,7 @@ void GroupDesk::look_at(std::size_t group) noexcept {
     seen.along.progress = view.progress;
     seen.along.remaining = view.remaining;
     seen.active_kind = view.active_kind;
+    seen.track = view.track.kind;
     seen.active = view.active;
     seen.block = view.block;
     seen.queued = view.queued_count;

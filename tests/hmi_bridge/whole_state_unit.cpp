@@ -100,6 +100,22 @@ TEST(WholeState, ATextWithANulCostsThatCharacterOnly) {
     EXPECT_EQ(state_json(*state), published.socket_state());
 }
 
+// docs/motion/tracking.md: with no command left a group stays on its belt, which takes it along. That is what moves it.
+TEST(WholeState, AGroupThatOnlyGoesWithABeltSaysSo) {
+    Published published;
+    auto& group = published.machine.snapshot.groups.at(0);
+    const auto command = [&] { return nlohmann::json::parse(published.socket_state())["groups"][0]["command"]; };
+    group.active = 0;
+    EXPECT_EQ(command(), "");
+    group.track = axes::FrameTrack::Kind::belt;
+    EXPECT_EQ(command(), "MC_TrackConveyorBelt");
+    group.track = axes::FrameTrack::Kind::table;
+    EXPECT_EQ(command(), "MC_TrackRotaryTable");
+    group.active = 5;
+    group.active_kind = axes::GroupCommandKind::linear_absolute;
+    EXPECT_EQ(command(), "MC_MoveLinearAbsolute");
+}
+
 TEST(WholeState, IsPublishedFiftyTimesASecondAtMostAndOnlyWhenAsked) {
     FakeMachine machine;
     MemoryBus bus;

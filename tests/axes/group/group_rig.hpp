@@ -130,7 +130,8 @@ struct GroupRig {
             const double jerk = trembles ? 2 * most / t : limits.jerk;
             EXPECT_LE(std::abs(now_at.velocity - from.velocity), most * t * (1 + 1e-6) + grain) << view_of(i);
             EXPECT_LE(std::abs(now_at.acceleration - from.acceleration), jerk * t * (1 + 1e-3) + grain) << view_of(i);
-            EXPECT_LE(std::abs(now_at.velocity - from.velocity - t * (now_at.acceleration + from.acceleration) / 2), jerk * t * t / 2 + grain)
+            EXPECT_LE(std::abs(now_at.velocity - from.velocity - t * (now_at.acceleration + from.acceleration) / 2),
+                      jerk * t * t / 2 + grain)
                 << view_of(i);
             EXPECT_LE(std::abs(now_at.position - from.position - t * (now_at.velocity + from.velocity) / 2), jerk * t * t * t / 4 + grain)
                 << view_of(i);

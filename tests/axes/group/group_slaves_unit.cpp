@@ -121,7 +121,12 @@ TEST(GroupSlaves, AWeakSlaveFallsBehindAndMakesItUp) {
     const double apart = rig.belt_at() - rig.view().path_gone;
     const auto move = rig.give(line({60, 0, 0}, 40));
     bool lost = false;
-    ASSERT_TRUE(rig.until([&] { lost = lost || !rig.slave().in_sync; return rig.status(move.id) == CommandStatus::done; }, 5000));
+    ASSERT_TRUE(rig.until(
+        [&] {
+            lost = lost || !rig.slave().in_sync;
+            return rig.status(move.id) == CommandStatus::done;
+        },
+        5000));
     EXPECT_TRUE(lost);
     ASSERT_TRUE(rig.until([&] { return rig.slave().in_sync; }, 5000));
     rig.run(5);

@@ -57,11 +57,25 @@ struct MovingWorld : GroupRig {
     };
     [[nodiscard]] HandFrame object_at(const Object& o) const {
         const double gone = way[o.master] - o.reference;
-        const Six moved = o.kind == FrameTrack::Kind::table ? Six{0, 0, 0, 0, 0, 2 * std::numbers::pi * gone / 360} : Six{gone, 0, 0, 0, 0, 0};
+        const Six moved =
+            o.kind == FrameTrack::Kind::table ? Six{0, 0, 0, 0, 0, 2 * std::numbers::pi * gone / 360} : Six{gone, 0, 0, 0, 0, 0};
         return hand_frame(o.origin) * hand_frame(moved) * hand_frame(o.place);
     }
-    [[nodiscard]] HandFrame tool() const {
-        return hand_frame(groups.equipment(ref)->frames.machine) * hand_frame(view().tool_set);
+    [[nodiscard]] HandFrame tool() const { return hand_frame(groups.equipment(ref)->frames.machine) * hand_frame(view().tool_set); }
+    /// Seen from the machine.
+    [[nodiscard]] HandFrame flange() const {
+        Joints q{};
+        for (std::size_t i = 0; i < members; ++i) q[i] = view().set_position[i];
+        const Pose at = groups[0].config().kinematics->forward(q, Pose{}).pose;
+        return hand_frame(numbers_of(at));
+    }
+    /// jerk * T^3 / 6 for a master whose jerk changes, twice where it changes its sign: of a table at this place.
+    [[nodiscard]] double unforeseen(const Object& o, const HandFrame& at) const {
+        const double t = to_seconds(cycle), way_of_it = 2 * axes[members + o.master].config().limits.jerk * t * t * t / 6;
+        if (o.kind != FrameTrack::Kind::table) return way_of_it;
+        double square = 0;
+        for (std::size_t i = 0; i < 3; ++i) square += (at.o[i] - o.origin[i]) * (at.o[i] - o.origin[i]);
+        return way_of_it * one_degree * std::sqrt(square);
     }
     [[nodiscard]] const Object* object_of(MC_CoordSystem frame) const {
         const auto serial = groups.equipment(ref)->frames.track_of(frame).serial;
@@ -79,8 +93,9 @@ struct MovingWorld : GroupRig {
         std::ostringstream all;
         for (const auto& line : log) all << line << "\n";
         all << "state " << static_cast<int>(view().state) << " error " << view().error << " active " << view().active << " kind "
-            << static_cast<int>(view().active_kind) << " queued " << static_cast<int>(view().queued_count) << " sync " << view().track.in_sync
-            << " track " << view().track.axis.valid() << " interrupted " << view().interrupted << " lock " << view().lock << " cycle " << path.size();
+            << static_cast<int>(view().active_kind) << " queued " << static_cast<int>(view().queued_count) << " sync "
+            << view().track.in_sync << " track " << view().track.axis.valid() << " interrupted " << view().interrupted << " lock "
+            << view().lock << " cycle " << path.size();
         return all.str();
     }
     AxisRef master(std::size_t m) const { return {static_cast<std::uint16_t>(members + m)}; }
@@ -89,13 +104,16 @@ struct MovingWorld : GroupRig {
         auto& axis_of = axes[members + m];
         const double v = once_in(4) ? 0 : draw(-most_velocity, most_velocity);
         note("master " + std::to_string(m) + " " + std::to_string(v));
-        (void)axis_of.submit(v == 0 ? AxisCommand{.kind = CommandKind::halt} : AxisCommand{.kind = CommandKind::move_velocity, .velocity = v}, Owner::program);
+        (void)axis_of.submit(
+            v == 0 ? AxisCommand{.kind = CommandKind::halt} : AxisCommand{.kind = CommandKind::move_velocity, .velocity = v},
+            Owner::program);
     }
     void renumber_master(std::size_t m) {
         const double by = draw(-500, 500);
         const double was = axis(members + m).set_position;
         if (axes[members + m].set(SetPosition{.position = by, .relative = true}, Owner::program) != ErrorId::none) return;
-        note("renumber " + std::to_string(m));
+        note("renumber " + std::to_string(m) + " by " + std::to_string(by) + " " + std::to_string(was) + " " +
+             std::to_string(axis(members + m).set_position));
         at_before[m] += axis(members + m).set_position - was;
     }
     static constexpr std::array<MC_CoordSystem, 4> frames{mcPCS, mcPCS_2, mcPCS_3, mcPCS_8};
@@ -124,7 +142,8 @@ struct MovingWorld : GroupRig {
         command.track.object = o.place;
         command.execution = once_in(2) ? mcImmediately : once_in(2) ? mcQueued : mcDelayed;
         const auto answer = submit(command);
-        note("track in " + std::to_string(frame) + " kind " + std::to_string(static_cast<int>(o.kind)) + " mode " + std::to_string(command.execution) + " -> " + std::to_string(static_cast<int>(answer.error)));
+        note("track in " + std::to_string(frame) + " kind " + std::to_string(static_cast<int>(o.kind)) + " mode " +
+             std::to_string(command.execution) + " -> " + std::to_string(static_cast<int>(answer.error)));
         if (answer.error == ErrorId::none) objects.push_back(o);
         if (answer.error == ErrorId::none) adopt();
         if (objects.size() > 40) objects.erase(objects.begin());
@@ -153,7 +172,8 @@ struct MovingWorld : GroupRig {
             move.kind = once_in(2) ? GroupCommandKind::linear_relative : GroupCommandKind::circular_relative;
             given.absolute = false;
             given.target = once_in(4) ? Six{} : Six{draw(-9, 9), draw(-9, 9), draw(-9, 9), 0, 0, 0};
-            move.circle = {.mode = mcBORDER, .aux = {given.target[0] / 2 + draw(-3, 3), given.target[1] / 2 + draw(-3, 3), given.target[2] / 2}};
+            move.circle = {.mode = mcBORDER,
+                           .aux = {given.target[0] / 2 + draw(-3, 3), given.target[1] / 2 + draw(-3, 3), given.target[2] / 2}};
         }
         for (std::size_t i = 0; i < 6; ++i) move.target[i] = given.target[i];
         give_noted(move, given);
@@ -172,13 +192,15 @@ struct MovingWorld : GroupRig {
     void give_noted(const GroupCommand& move, const Given& given) {
         const auto answer = submit(move);
         note("move " + std::to_string(static_cast<int>(move.kind)) + " frame " + std::to_string(move.frame) + " mode " +
-             std::to_string(move.buffer_mode) + " -> " + std::to_string(static_cast<int>(answer.error)) + " id " + std::to_string(answer.id));
+             std::to_string(move.buffer_mode) + " -> " + std::to_string(static_cast<int>(answer.error)) + " id " +
+             std::to_string(answer.id));
         if (answer.error == ErrorId::none) commands[answer.id] = given;
         if (commands.size() > 200) commands.erase(commands.begin());
     }
     void simple(GroupCommandKind kind) {
         const auto answer = submit(simply(kind, once_in(2) ? PathDynamics{} : PathDynamics{0, 0, draw(200, 1500), 0}));
-        note("simple " + std::to_string(static_cast<int>(kind)) + " -> " + std::to_string(static_cast<int>(answer.error)) + " id " + std::to_string(answer.id));
+        note("simple " + std::to_string(static_cast<int>(kind)) + " -> " + std::to_string(static_cast<int>(answer.error)) + " id " +
+             std::to_string(answer.id));
         if (kind == GroupCommandKind::stop && answer.error == ErrorId::none) lock = answer.id;
     }
     void couple() {
@@ -203,7 +225,10 @@ struct MovingWorld : GroupRig {
                 (void)set(Override{.velocity = v, .acceleration = once_in(3) ? draw(0.3, 1) : 1, .jerk = 1});
                 return;
             }
-            case 8: note("override 1"); (void)set(Override{}); return;
+            case 8:
+                note("override 1");
+                (void)set(Override{});
+                return;
             case 9: return simple(GroupCommandKind::halt);
             case 10: return simple(GroupCommandKind::interrupt);
             case 11:
@@ -233,7 +258,8 @@ struct MovingWorld : GroupRig {
                 return;
             }
             case 18: {
-                GroupCommand fixed{.kind = GroupCommandKind::set_frame, .frame = once_in(2) ? mcMCS : frames[static_cast<std::size_t>(whole(0, 3))]};
+                GroupCommand fixed{.kind = GroupCommandKind::set_frame,
+                                   .frame = once_in(2) ? mcMCS : frames[static_cast<std::size_t>(whole(0, 3))]};
                 fixed.target = {draw(-20, 20), draw(-20, 20), draw(-20, 20), 0, 0, draw(-1, 1)};
                 fixed.execution = once_in(2) ? mcImmediately : mcQueued;
                 note("frame " + std::to_string(fixed.frame) + " -> " + std::to_string(static_cast<int>(submit(fixed).error)));
@@ -272,8 +298,10 @@ struct MovingWorld : GroupRig {
         if (view().state == GroupState::GroupDisabled && once_in(40)) (void)set(EnableGroup{}), note("enable");
     }
 
-    /// A cycle with so many deeds.
-    void live(int deeds) {
+    /// A cycle in which it may occur to the hand to do something, or three things. It is nervous at some times and patient at others.
+    void live() {
+        if (once_in(1500)) patience = once_in(2) ? 30 : 250;
+        const int deeds = once_in(patience) ? whole(1, 3) : 0;
         step([&] {
             heal();
             recover();
@@ -294,32 +322,45 @@ struct MovingWorld : GroupRig {
         }
         adopt();
         const auto& v = view();
+        const auto object =
+            std::find_if(objects.begin(), objects.end(), [&](const Object& o) { return o.serial != 0 && o.serial == v.track.serial; });
+        const bool on = v.track.in_sync && object != objects.end();
+        const auto held = back(flange()) * hand_frame(v.tool_set);
+        const bool same = on && was_on && object->serial == was_serial && apart(held, was_held) < 1e-9;
+        was_held = held;
+        if (!same) seen_from = groups.equipment(ref)->frames.machine;  // what is set later bends nothing that is under way
+        const auto place = hand_frame(seen_from) * hand_frame(v.tool_set);
+        const auto rel = on ? back(object_at(*object)) * place : HandFrame{};
+        if (same) slips(rel, unforeseen(*object, place));
         for (auto& [id, given] : commands) {
             if (!given.object || !given.absolute || checked.contains(id) || status(id) != CommandStatus::done) continue;
             checked[id] = true;
-            if (v.track.in_sync && v.path_velocity == 0 && v.queued_count == 0 && v.active == 0) at_target(given);
+            if (v.track.in_sync && v.path_velocity == 0 && v.track.serial == given.object->serial && given.machine == seen_from)
+                at_target(given);
         }
-        const auto object = std::find_if(objects.begin(), objects.end(), [&](const Object& o) { return o.serial != 0 && o.serial == v.track.serial; });
-        const bool on = v.track.in_sync && object != objects.end();
-        const auto rel = on ? back(object_at(*object)) * tool() : HandFrame{};
-        const bool same = on && was_on && object->serial == was_serial;
-        if (same) slips(rel);
         was_on = on;
         was = rel;
         was_path = v.path_velocity;
+        was_faster = std::abs(v.path_acceleration);
         was_serial = on ? object->serial : 0;
     }
     /// From one cycle to the next the tool goes on the object as far as the path does; jerk * T^3 / 6 for masters that change their acceleration.
-    void slips(const HandFrame& rel) {
+    void slips(const HandFrame& rel, double slip) {
         double square = 0;
         for (std::size_t i = 0; i < 3; ++i) square += (rel.o[i] - was.o[i]) * (rel.o[i] - was.o[i]);
-        const double path_way = std::max(view().path_velocity, was_path) * to_seconds(cycle);
-        EXPECT_LE(std::sqrt(square), path_way * (1 + 1e-6) + slip) << story();
+        // In between it may be faster than at both ends: by an eighth of what their accelerations make of a period.
+        const double t = to_seconds(cycle);
+        const double path_way = t * (std::max(view().path_velocity, was_path) + t * (std::abs(view().path_acceleration) + was_faster) / 8);
+        EXPECT_LE(std::sqrt(square), path_way * (1 + 1e-6) + slip + 1e-8)
+            << story() << "\nway " << way[0] << " " << way[1] << " masters " << axis(members).set_velocity << " "
+            << axis(members + 1).set_velocity << " at " << axis(members + 1).set_position;
         ++compared;
     }
     void at_target(const Given& given) {
-        const auto rel = back(object_at(*given.object)) * tool();
-        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(rel.o[i], given.target[i], 2e-6) << i << "\n" << story();
+        const auto place = hand_frame(seen_from) * hand_frame(view().tool_set);
+        const auto rel = back(object_at(*given.object)) * place;
+        const double within = unforeseen(*given.object, place) + 1e-8;
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(rel.o[i], given.target[i], within) << i << "\n" << story();
         const bool all = turns[3] && turns[4] && turns[5];
         EXPECT_LE(all ? apart(rel, hand_frame(given.target)) : 0, 2e-6) << story();
         ++reached;
@@ -341,7 +382,13 @@ struct MovingWorld : GroupRig {
             observe();
         }
         const auto quiet = [&] { return view().active == 0 && view().queued_count == 0; };
-        EXPECT_TRUE(until([&] { observe(); return quiet() || view().state == GroupState::GroupErrorStop; }, 30000)) << story();
+        EXPECT_TRUE(until(
+            [&] {
+                observe();
+                return quiet() || view().state == GroupState::GroupErrorStop;
+            },
+            30000))
+            << story();
         const auto settled = [&] {
             const auto& v = view();
             switch (v.state) {
@@ -366,7 +413,6 @@ struct MovingWorld : GroupRig {
     std::size_t members;
     std::array<bool, 6> turns{};
     double most_velocity = 45;
-    double slip = 1e-6;
     bool troubles = false;
     std::array<double, 2> way{}, at_before{};
     std::vector<Object> objects;
@@ -374,9 +420,12 @@ struct MovingWorld : GroupRig {
     std::map<CommandId, bool> checked;
     bool was_on = false;
     HandFrame was;
-    double was_path = 0;
+    Six seen_from{};
+    HandFrame was_held;
+    double was_path = 0, was_faster = 0;
     std::uint32_t was_serial = 0;
     CommandId lock = 0;
+    int patience = 60;
     std::size_t heal_at = 0;
     std::size_t compared = 0, reached = 0;
     std::vector<std::string> log;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "fb_library/all_blocks.hpp"
+#include "tests/axes/group/by_hand.hpp"
 #include "tests/axes/group/jog_arms.hpp"
 
 namespace taktwerk::fb {
@@ -22,7 +23,8 @@ public:
 
     /// Where a place is drawn near to: the members, and the tool's point in the machine.
     axes::JointVector members{};
-    std::array<double, 6> tool{};
+    std::array<double, 6> tool{}, tool_seen{};  ///< seen: from the world
+    AxisRef belt{}, table{};
     std::size_t member_count = 0;
 
     /// Any of this many enumerators, seldom one more: which is none.
@@ -88,6 +90,27 @@ void draw(Block& b, PinDraws& d) {
     }
     if constexpr (requires { b.CoordTransform.X = 1.0; })
         b.CoordTransform = {d.number(-50, 50), d.number(-50, 50), 0, 0, 0, d.number(-3, 3)};
+    const auto moving = [&](MC_COORD_REF& origin, MC_COORD_REF& object) {
+        using axes::test::hand_frame;
+        const std::array<double, 6> seen{
+            d.tool_seen[0] + d.number(-40, 40), d.tool_seen[1] + d.number(-40, 40), d.tool_seen[2], 0, 0, d.number(-3, 3)};
+        std::array<double, 6> place = d.tool_seen;
+        for (std::size_t i = 0; i < 3; ++i) place[i] += d.number(-5, 5);
+        const auto at = axes::test::hand_six(axes::test::back(hand_frame(seen)) * hand_frame(place));
+        origin = {seen[0], seen[1], seen[2], seen[3], seen[4], seen[5]};
+        object = {at[0], at[1], at[2], at[3], at[4], at[5]};
+    };
+    if constexpr (requires { b.ConveyorBelt; }) {
+        b.ConveyorBelt = d.chance(0.02) ? AxisRef{static_cast<std::uint16_t>(d.whole(0, 20))} : d.belt;
+        moving(b.ConveyorBeltOrigin, b.InitialObjectPosition);
+    }
+    if constexpr (requires { b.RotaryTable; }) {
+        b.RotaryTable = d.chance(0.02) ? d.belt : d.table;
+        moving(b.RotaryTableOrigin, b.InitialObjectPosition);
+    }
+    if constexpr (
+        requires { b.ConveyorBelt; } || requires { b.RotaryTable; })
+        b.BufferMode = d.chance(0.1) ? d.any<MC_BufferMode>(6) : d.chance(0.6) ? mcAborting : mcBuffered;
     if constexpr (requires { b.ToolNumber; }) b.ToolNumber = static_cast<std::int16_t>(d.whole(-1, 3));
     if constexpr (requires { b.ToolData; })
         b.ToolData.ToolFrame = {d.number(-20, 20), d.number(-20, 20), d.number(-20, 20), 0, 0, d.number(-1, 1)};

@@ -23,6 +23,7 @@ using Blocks2 = std::tuple<Blocks..., Blocks...>;
 /// Twice each, so that one is busy while the other one comes.
 using Moves = Blocks2<MC_MoveLinearAbsolute, MC_MoveLinearRelative, MC_MoveCircularAbsolute, MC_MoveCircularRelative, MC_MoveDirectAbsolute,
                       MC_MoveDirectRelative, MC_GroupWaitTime>;
+using Tracks = Blocks2<MC_TrackConveyorBelt, MC_TrackRotaryTable>;
 using Stops = std::tuple<MC_GroupHalt, MC_GroupInterrupt, MC_GroupContinue, MC_GroupStop>;
 using Settings =
     std::tuple<MC_SetCartesianTransform, MC_SetCoordinateTransform, MC_GroupWriteToolData, MC_GroupSelectTool, MC_GroupWritePayloadData,
@@ -39,8 +40,22 @@ using Reads = std::tuple<MC_GroupReadStatus, MC_GroupReadMotionState, MC_GroupRe
 class BlockWalk {
 public:
     BlockWalk(std::uint64_t seed, const JogArm& arm)
-        : draws_(seed), arm_(arm), kinematics_(arm_of(arm.description)), plc_(axes_of(arm), GroupRig::all_of(axes_of(arm), kinematics_)) {
+        : draws_(seed),
+          arm_(arm),
+          kinematics_(arm_of(arm.description)),
+          plc_(with_masters(axes_of(arm)), GroupRig::all_of(axes_of(arm), kinematics_)) {
         draws_.member_count = arm.turning.size();
+        const auto first = static_cast<std::uint16_t>(draws_.member_count);
+        draws_.belt = {first};
+        draws_.table = {static_cast<std::uint16_t>(first + 1)};
+        sync_.SlaveAxis = {static_cast<std::uint16_t>(first + 2)};
+    }
+    /// What moves frames, and what follows the path.
+    static std::vector<axes::AxisConfig> with_masters(std::vector<axes::AxisConfig> all) {
+        for (const auto* name : {"belt", "table", "pump"})
+            all.push_back(group_axis(name, {.velocity = 100, .acceleration = 250, .deceleration = 250, .jerk = 1000}));
+        all[all.size() - 2].modulo = 360;
+        return all;
     }
 
     void run(int scans) {
@@ -78,6 +93,7 @@ private:
         b.AxesGroup = GroupPlc::group;
         if (!b.Execute && draws_.chance(often)) {
             draw(b, draws_);
+            if constexpr (requires { b.Position.C; }) near_the_tool(b);
             b.Execute = true;
             said_ += std::to_string(ctx.cycle) + " " + name_of<Block>() + "; ";
             if (said_.size() > 1500) said_.erase(0, 500);
@@ -91,6 +107,14 @@ private:
         EXPECT_TRUE(wrong.empty()) << name_of<Block>() << ": " << wrong;
         busy_ = busy_ || b.Busy;
     }
+    /// In a product's frame often a place that is not far, wherever the product is by now.
+    template <class Block>
+    void near_the_tool(Block& b) {
+        if (!axes::is_product(b.CoordSystem) || draws_.chance(0.3)) return;
+        auto six = rig().groups.position_in(GroupRig::ref, b.CoordSystem, mcSetValue).place.six;
+        for (std::size_t i = 0; i < 3; ++i) six[i] += draws_.uniform(-10, 10);
+        b.Position.C.Tcp = {six[0], six[1], six[2], six[3], six[4], six[5]};
+    }
     template <class Block>
     static std::string name_of() {
         const std::string all = __PRETTY_FUNCTION__;
@@ -102,8 +126,12 @@ private:
         for (std::size_t i = 0; i < draws_.member_count; ++i) draws_.members[i] = view().set_position[i];
         if (view().tool_known) draws_.tool = view().tool_set;
         if (draws_.chance(0.0005)) pace_ = std::exp(draws_.uniform(std::log(0.002), std::log(0.2)));
+        draws_.tool_seen = hand_six(hand_frame(rig().groups.equipment(GroupRig::ref)->frames.machine) * hand_frame(draws_.tool));
+        masters();
+        couple(ctx);
         busy_ = false;
         call(moves_, move_lives_, ctx, pace_);
+        call(tracks_, track_lives_, ctx, pace_ / 2);
         call(stops_, stop_lives_, ctx, pace_ / 6);
         call(settings_, setting_lives_, ctx, pace_ / 2);
         call(seldom_, seldom_lives_, ctx, pace_ / 80);
@@ -113,6 +141,35 @@ private:
         std::apply([&](auto&... b) { (read(b, ctx), ...); }, reads_);
         fault(ctx);
         recover();
+    }
+    void masters() {
+        for (const auto master : {draws_.belt, draws_.table}) {
+            if (!draws_.chance(0.003)) continue;
+            auto& axis = rig().axes[master.index];
+            const double v = draws_.chance(0.3) ? 0 : draws_.uniform(-30, 30);
+            (void)axis.submit(v == 0 ? axes::AxisCommand{.kind = axes::CommandKind::halt}
+                                     : axes::AxisCommand{.kind = axes::CommandKind::move_velocity, .velocity = v},
+                              axes::Owner::program);
+            if (draws_.chance(0.1))
+                (void)axis.set(axes::SetPosition{.position = draws_.uniform(-90, 90), .relative = true}, axes::Owner::program);
+        }
+    }
+    /// It goes on until the slave gets something else to do: no Done.
+    void couple(const MotionContext& ctx) {
+        if (draws_.chance(0.002)) {
+            sync_.Execute = !sync_.Execute;
+            sync_.RatioNumerator = static_cast<std::int16_t>(draws_.whole(-3, 3));
+            sync_.RatioDenominator = static_cast<std::uint16_t>(draws_.whole(0, 4));
+            sync_.Acceleration = draws_.ramp();
+        }
+        if (draws_.chance(0.0005)) (void)rig().axes[sync_.SlaveAxis.index].submit({.kind = axes::CommandKind::halt}, axes::Owner::program);
+        sync_.AxesGroup = GroupPlc::group;
+        sync_(ctx);
+        const int shown = static_cast<int>(sync_.Busy) + static_cast<int>(sync_.CommandAborted) + static_cast<int>(sync_.Error);
+        EXPECT_TRUE(sync_.Execute ? shown == 1 : shown <= 1) << "MC_SyncAxisToGroup";
+        EXPECT_EQ(sync_.Error, sync_.ErrorID != ErrorId::none);
+        EXPECT_TRUE(sync_.Busy || !sync_.Active);
+        EXPECT_TRUE(sync_.Active || !sync_.InSync);
     }
     template <class Block>
     void jog(Block& b, const MotionContext& ctx) {
@@ -155,7 +212,7 @@ private:
     }
     void fault(const MotionContext& ctx) {
         if (draws_.chance(pace_ / 3000)) {
-            rig().drives[static_cast<std::size_t>(draws_.whole(0, static_cast<int>(draws_.member_count) - 1))]->fault_code = 0x2310;
+            rig().drives[static_cast<std::size_t>(draws_.whole(0, static_cast<int>(draws_.member_count) + 2))]->fault_code = 0x2310;
             healed_ = ctx.cycle + 200;
         }
         if (ctx.cycle >= healed_)
@@ -165,6 +222,8 @@ private:
     void recover() {
         if (!draws_.chance(0.02)) return;
         if (view().state == GroupErrorStop) (void)rig().groups.reset(GroupRig::ref, axes::Owner::program);
+        for (std::size_t i = draws_.member_count; i < rig().axes.size(); ++i)
+            if (rig().axis(i).state == axes::AxisState::ErrorStop) (void)rig().axes[i].reset(axes::Owner::program);
         for (std::size_t i = 0; i < draws_.member_count; ++i)
             if (view().state == GroupDisabled && !view().has(i))
                 (void)rig().set(axes::AddMember{{static_cast<std::uint16_t>(i)}, static_cast<std::uint8_t>(i + 1)});
@@ -217,6 +276,8 @@ private:
     Arm kinematics_;
     GroupPlc plc_;
     Moves moves_;
+    Tracks tracks_;
+    MC_SyncAxisToGroup sync_;
     Stops stops_;
     Settings settings_;
     Seldom seldom_;
@@ -225,6 +286,7 @@ private:
     MC_GroupJogVector vector_;
     MC_GroupSetOverride override_;
     std::array<ExecuteLife, std::tuple_size_v<Moves>> move_lives_;
+    std::array<ExecuteLife, std::tuple_size_v<Tracks>> track_lives_;
     std::array<ExecuteLife, std::tuple_size_v<Stops>> stop_lives_;
     std::array<ExecuteLife, std::tuple_size_v<Settings>> setting_lives_;
     std::array<ExecuteLife, std::tuple_size_v<Seldom>> seldom_lives_;
