@@ -196,6 +196,7 @@ private:
     void arrive() {
         const Way& last = moves_.back().way;
         const auto& view = rig_.view();
+        passed.push_back({view.set_position, {}, {}, ids_.back()});
         if (last.kind == Way::Kind::joints) {
             for (std::size_t k = 0; k < last.members; ++k) EXPECT_NEAR(view.set_position[k], last.to[k], 1e-9 * 100) << k;
             return;

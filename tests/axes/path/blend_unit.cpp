@@ -71,15 +71,16 @@ TEST(Blend, ArcMeetsLineWithItsCurvature) {
 // Towards an arc that bends away from the corner and towards one that bends on: what a line would need is too long or too short, and is corrected.
 TEST(Blend, DeviationHoldsBesideArcsOfBothSenses) {
     for (const double sense : {1.0, -1.0})
-        for (const double radius : {5.0, 20.0, 50.0}) {
-            const PathElement arc = PathElement::arc(at(0, sense * radius), at(0, -sense * radius), at(radius, 0), at(0, 0), 1.5);
+        for (const double wanted : {0.1, 0.3, 1.0})
+            for (const double slope : {0.3, 1.0, 3.0}) {
+                const PathElement arc = PathElement::arc(at(0, sense * 50), at(0, -sense * 50), at(50, 0), at(0, 0), 1.5);
 
-            const auto b =
-                blend(PathElement::line(at(-100, 30), at(0, 0)), arc, {BlendRule::corner_deviation, 0.05 * radius}, 50, arc.length() / 2);
+                const auto b = blend(PathElement::line(at(-100, 100 * slope), at(0, 0)), arc, {BlendRule::corner_deviation, wanted}, 50,
+                                     arc.length() / 2);
 
-            ASSERT_TRUE(b) << sense << ' ' << radius;
-            EXPECT_LE(b->deviation, 0.05 * radius * (1 + 1e-9)) << sense << ' ' << radius;
-        }
+                ASSERT_TRUE(b) << sense << ' ' << wanted << ' ' << slope;
+                EXPECT_LE(b->deviation, wanted * (1 + 1e-9)) << sense << ' ' << wanted << ' ' << slope;
+            }
 }
 
 // 160 degrees are the sharpest corner that is passed on a curve (docs/motion/path.md).

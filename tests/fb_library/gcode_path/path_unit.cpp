@@ -36,6 +36,21 @@ double off_contour(const Point& p) {
     return off;
 }
 
+// Where a piece under G61 meets one under G64 the stricter one holds, whichever comes first: the corner is stood at. Between two under G64 it is rounded.
+TEST(GcodePath, TheStricterRuleHoldsAtAJoint) {
+    PathRig rig("G21 G90 G17\nG64 P2 Q0 G1 X20 F3000\nG61 G1 Y20\nG64 P2 Q0 G1 X40\nG1 Y40\nM2\n");
+    ASSERT_TRUE(rig.run(20000)) << static_cast<int>(rig.move.ErrorID) << " line " << rig.handshake.FaultLine;
+    const auto nearest = [&](const Point& corner) {
+        double least = 1e9;
+        for (std::size_t n = rig.began; n < rig.plc.rig.path.size(); ++n) least = std::min(least, distance(rig.at_cycle(n), corner));
+        return least;
+    };
+    EXPECT_LT(nearest({20, 0, 0}), 1e-9) << "from G64 to G61";
+    EXPECT_LT(nearest({20, 20, 0}), 1e-9) << "from G61 to G64";
+    EXPECT_NEAR(nearest({40, 20, 0}), 2, 0.05) << "from G64 to G64";
+    EXPECT_LT(nearest({40, 40, 0}), 1e-9);
+}
+
 // G-094: the set-points lie on the program's lines and arcs, all of it is gone in its order, and nothing is said to be done before.
 TEST(GcodePath, ThePortalDrawsTheFile) {
     PathRig rig(contour);
