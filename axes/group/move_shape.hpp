@@ -31,10 +31,10 @@ struct MoveShape {
 
 struct MoveSpace {
     const Kinematics* arm = nullptr;
-    const Workspace* workspace = nullptr;  ///< of the tool's point; nullptr: anywhere
     std::size_t members = 0;
     std::array<MemberLimits, max_path_axes> limits{};
-    double tool_velocity = unlimited;  ///< u/s of the tool's point
+    double tool_velocity = unlimited;      ///< u/s of the tool's point
+    const Workspace* workspace = nullptr;  ///< where the tool's point may be; nullptr: anywhere
 };
 
 /// Errors: out_of_reach, singular_path, beyond_software_limit, outside_workspace, invalid_arc, half_turn, no_kinematics.

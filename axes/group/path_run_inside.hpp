@@ -23,8 +23,8 @@ struct PathRun::Inside {
         : link(paths != nullptr ? sections_of_stored_paths : RunTrack::usual_sections),
           arm(config.kinematics),
           workspace(config.workspace),
-          planner(link, {arm.get(), workspace.get(), 0, {}}, std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)), paths,
-                  config.millimetre),
+          planner(link, {.arm = arm.get(), .workspace = workspace.get()}, std::max(least_lead, least_lead_cycles * to_seconds(its_cycle)),
+                  paths, config.millimetre),
           drive(axes) {}
 
     GroupLink link;
