@@ -19,8 +19,8 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 
-constexpr auto renewal = 50ms;
-constexpr auto settling = 5s;  ///< longest ramp we wait for after letting go
+constexpr auto renewed_each = 50ms;
+constexpr auto longest_stop = 5s;  ///< longest ramp we wait for after letting go
 
 Json named(const Json& list, const std::string& name) {
     for (const auto& one : list)
@@ -123,12 +123,12 @@ int jog_group(const RemoteOptions& remote, const GroupJogOptions& options, hmi::
             arrived = !press && *distance > 0 && group.at("state") == "GroupStandby";
         }
         if (options.for_s > 0 && clock.now() - start >= from_seconds(options.for_s)) break;
-        std::this_thread::sleep_for(renewal);
+        std::this_thread::sleep_for(renewed_each);
     }
     if (show) fmt::print("\n");
     const auto released = client.request({{"cmd", "group_jog"}, {"group", options.group}, {"velocity", 0}});
     if (!released) return report(remote, released.error());
-    for (const auto end = clock.now() + settling; clock.now() < end;) {
+    for (const auto end = clock.now() + longest_stop; clock.now() < end;) {
         const auto state = state_of(client);
         if (!state) return report(remote, state.error());
         const auto group = named(state->at("groups"), options.group);

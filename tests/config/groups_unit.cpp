@@ -30,6 +30,8 @@ TEST(GroupsOfAFile, TheArmStandsWhereItsAxesSay) {
     EXPECT_EQ(arm.default_dynamics.velocity, 100);
     EXPECT_EQ(arm.default_dynamics.acceleration, 0);
     EXPECT_EQ(arm.default_dynamics.jerk, 1000);
+    EXPECT_EQ(axes::setup_velocity_of(arm), 120) << "12 cm/s";
+    EXPECT_EQ(axes::setup_velocity_of(machine.axis_groups[1]), 250) << "reduced speed of ISO 10218-1, where nothing is said";
     ASSERT_TRUE(arm.kinematics);
     // a = 30 deg; b = 20 deg counts backwards from 10: 10 - 20 = -10 deg of the picture. The base stands at x = 1000 mm, turned by 90 deg.
     const auto at = arm.kinematics->forward({30, 20, 5, 0, 0, 0}, {});
