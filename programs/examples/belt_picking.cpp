@@ -72,6 +72,55 @@ struct Belt {
     [[nodiscard]] double carried(const TaskContext& ctx) const { return ctx.view(axis)->set_position - parts[0]; }
 };
 
+/// The six joints as one group: power, references, what failed is reset.
+struct Arm {
+    static constexpr std::size_t joint_count = 6;
+    std::array<AxisRef, joint_count> joints;
+    GroupRef group;
+    MC_GroupPower power;
+    std::array<MC_Home, joint_count> homes;
+    MC_GroupEnable enable;
+    MC_GroupReset reset;
+    MC_GroupReadStatus status;
+    MC_GroupReadPosition tool;  ///< its point in the machine, set
+    TON cooling;
+    bool was_failed = false;
+    std::int64_t failures = 0, recoveries = 0;
+
+    /// TRUE: it takes commands.
+    bool call(TaskContext& ctx) {
+        for (auto* block : {&power.AxesGroup, &enable.AxesGroup, &reset.AxesGroup, &status.AxesGroup, &tool.AxesGroup}) *block = group;
+        power.Enable = status.Enable = tool.Enable = true;
+        power(ctx);
+        status(ctx);
+        tool.CoordSystem = mcMCS;
+        tool(ctx);
+        enable.Execute = status.GroupDisabled && !enable.Error;
+        enable(ctx);
+
+        const bool failed = status.GroupErrorStop;
+        failures += failed && !was_failed;
+        recoveries += was_failed && !failed;
+        was_failed = failed;
+        cooling.IN = failed && !reset.Busy;
+        cooling.PT = cooling_time;
+        cooling(ctx);
+        reset.Execute = failed && (cooling.Q || reset.Busy);
+        reset(ctx);
+
+        bool homed = true;
+        for (std::size_t i = 0; i < joint_count; ++i) {
+            const bool knows = ctx.view(joints[i])->homed;
+            homes[i].Axis = joints[i];
+            homes[i].Execute = power.Status && !failed && (homes[i].Busy || !knows);
+            homes[i](ctx);
+            homed = homed && knows && !homes[i].Busy;
+        }
+        return power.Status && homed && tool.Valid && (status.GroupStandby || status.GroupMoving);
+    }
+    [[nodiscard]] const MC_CART_REF& place() const { return tool.Position.C.Tcp; }
+};
+
 class BeltPicking final : public Program {
     static constexpr double down = std::numbers::pi;  // RX of a tool that points down
     // mm. The belt lies across the front of the arm; along it, 0 is straight ahead.
@@ -97,20 +146,12 @@ class BeltPicking final : public Program {
         leave    // up
     };
 
-    static constexpr std::size_t joint_count = 6;
-    std::array<AxisRef, joint_count> joints_;
-    GroupRef arm_;
+    Arm arm_;
+    Belt belt_;
     Output<bool> gripper_;
     Parameter speed_;
-    Belt belt_;
 
-    MC_GroupPower power_;
-    std::array<MC_Home, joint_count> homes_;
-    MC_GroupEnable enable_;
-    MC_GroupReset reset_;
-    MC_GroupReadStatus status_;
-    MC_GroupReadPosition tool_;
-    TON cooling_, gripping_, retry_;
+    TON gripping_, retry_;
     MC_TrackConveyorBelt track_;
     MC_MoveDirectAbsolute fold_, home_;
     MC_MoveLinearAbsolute rise_, over_, down_, lift_, carry_, lower_, leave_;
@@ -120,14 +161,14 @@ class BeltPicking final : public Program {
     bool ready_ = false, in_work_ = false;
     bool closed_ = false;  // the gripper
     bool holds_ = false;   // a part that is off the belt
-    bool was_failed_ = false, lost_ = false;
-    std::int64_t picked_ = 0, placed_ = 0, arm_failures_ = 0, arm_recoveries_ = 0;
+    bool lost_ = false;    // it finds no way home
+    std::int64_t picked_ = 0, placed_ = 0;
 
 public:
     void declare(Declaration& d) override {
         static constexpr std::array names{"j1", "j2", "j3", "j4", "j5", "j6"};
-        for (std::size_t i = 0; i < joint_count; ++i) joints_[i] = d.axis(names[i]);
-        arm_ = d.axis_group("arm");
+        for (std::size_t i = 0; i < names.size(); ++i) arm_.joints[i] = d.axis(names[i]);
+        arm_.group = d.axis_group("arm");
         belt_.axis = d.axis("belt");
         gripper_ = d.output("gripper");
         speed_ = d.parameter("belt_speed", {.value = 80, .minimum = 10, .maximum = 120, .unit = "mm/s", .doc = "of the belt"});
@@ -135,8 +176,8 @@ public:
         d.monitor("picked", picked_, "", "parts that were lifted off the belt");
         d.monitor("placed", placed_, "", "parts that are on the tray");
         d.monitor("missed", belt_.missed, "", "parts that passed by");
-        d.monitor("arm_failures", arm_failures_, "", "how often the arm failed");
-        d.monitor("arm_recoveries", arm_recoveries_, "", "how often it came back");
+        d.monitor("arm_failures", arm_.failures, "", "how often the arm failed");
+        d.monitor("arm_recoveries", arm_.recoveries, "", "how often it came back");
         d.monitor("belt_failures", belt_.failures, "", "how often the belt failed");
         d.monitor("belt_recoveries", belt_.recoveries, "", "how often it came back");
         d.block("down", down_);
@@ -148,13 +189,13 @@ public:
 
     void start() override {
         step_ = Step::stand;
-        ready_ = in_work_ = closed_ = holds_ = lost_ = was_failed_ = false;
+        ready_ = in_work_ = closed_ = holds_ = lost_ = false;
         belt_.part_count = 0;
-        belt_.was_failed = false;
+        arm_.was_failed = belt_.was_failed = false;
     }
 
     void scan(TaskContext& ctx) {
-        supply(ctx);
+        ready_ = arm_.call(ctx);
         const bool runs = ready_ && in_work_;
         belt_.call(ctx, runs, ctx.get(speed_));
         if (!ready_) give_up();
@@ -165,38 +206,6 @@ public:
     }
 
 private:
-    /// Power, references, the group's state.
-    void supply(TaskContext& ctx) {
-        for (auto* group : {&power_.AxesGroup, &enable_.AxesGroup, &reset_.AxesGroup, &status_.AxesGroup, &tool_.AxesGroup}) *group = arm_;
-        power_.Enable = status_.Enable = tool_.Enable = true;
-        power_(ctx);
-        status_(ctx);
-        tool_.CoordSystem = mcMCS;
-        tool_(ctx);
-        enable_.Execute = status_.GroupDisabled && !enable_.Error;
-        enable_(ctx);
-
-        const bool failed = status_.GroupErrorStop;
-        arm_failures_ += failed && !was_failed_;
-        arm_recoveries_ += was_failed_ && !failed;
-        was_failed_ = failed;
-        cooling_.IN = failed && !reset_.Busy;
-        cooling_.PT = cooling_time;
-        cooling_(ctx);
-        reset_.Execute = failed && (cooling_.Q || reset_.Busy);
-        reset_(ctx);
-
-        bool homed = true;
-        for (std::size_t i = 0; i < joint_count; ++i) {
-            const bool knows = ctx.view(joints_[i])->homed;
-            homes_[i].Axis = joints_[i];
-            homes_[i].Execute = power_.Status && !failed && (homes_[i].Busy || !knows);
-            homes_[i](ctx);
-            homed = homed && knows && !homes_[i].Busy;
-        }
-        ready_ = power_.Status && homed && tool_.Valid && (status_.GroupStandby || status_.GroupMoving);
-    }
-
     /// The belt stands soon, and the arm where it is. What is held above the belt stays held; what is still on it is let go at once, or it would be torn.
     void give_up() {
         step_ = Step::stand;
@@ -208,7 +217,7 @@ private:
         decide(ctx);
         for (auto* group : {&track_.AxesGroup, &fold_.AxesGroup, &home_.AxesGroup, &rise_.AxesGroup, &over_.AxesGroup, &down_.AxesGroup,
                             &lift_.AxesGroup, &carry_.AxesGroup, &lower_.AxesGroup, &leave_.AxesGroup})
-            *group = arm_;
+            *group = arm_.group;
         way_home(ctx);
         on_belt(ctx);
         to_tray(ctx);
@@ -262,7 +271,7 @@ private:
                 return;
             case Step::lift:
                 after(lift_, Step::place);
-                if (!holds_ && tool_.Position.C.Tcp.Z > belt_height + off_belt) {
+                if (!holds_ && arm_.place().Z > belt_height + off_belt) {
                     holds_ = true;
                     ++picked_;
                 }
@@ -291,8 +300,8 @@ private:
     }
 
     void begin_way_home() {
-        rise_.Position.C.Tcp = tool_.Position.C.Tcp;
-        rise_.Position.C.Tcp.Z = std::max(tool_.Position.C.Tcp.Z, safe_height);
+        rise_.Position.C.Tcp = arm_.place();
+        rise_.Position.C.Tcp.Z = std::max(arm_.place().Z, safe_height);
     }
     void way_home(TaskContext& ctx) {
         rise_.CoordSystem = home_.CoordSystem = mcMCS;

@@ -123,6 +123,8 @@ private:
             on_belt_ = false;
             return;
         }
+        // The program goes by set-points, which are some milliseconds ahead: what it takes for lifted may run on without the belt a little lower.
+        if (tool_[2] > height + off_belt - 1) return;
         const auto worst = [](double& so_far, double now) { so_far = std::max(so_far, std::abs(now)); };
         worst(grip.along, tool_[1] - barrier - (belt_ - first - every * static_cast<double>(grip.part)));
         worst(grip.across, tool_[0] - forward);
