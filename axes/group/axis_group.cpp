@@ -94,6 +94,11 @@ void AxisGroup::update(Instant) noexcept {
         if (error != 0) fail(error);
         else if (loss.any) fail(static_cast<std::uint16_t>(ErrorId::member_left));
     }
+    // All at once (an emergency stop, a lost bus): nobody is left whom it could bring to rest, and what it was about must not be there when they come back.
+    if (loss.any && !members_.led()) {
+        tracking_.clear();
+        run_.clear();
+    }
     if (view_.resetting) watch_reset();
     take_operators_override();
     publish();

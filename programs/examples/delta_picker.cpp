@@ -250,7 +250,7 @@ private:
         if (step_ != Step::raise || !begun_) raise_.Distance.C.Tcp = {.Z = std::max(travel_height - place_.Position.C.Tcp.Z, 0.0)};
         raise_.Velocity = 200;
         ready_.Position.C.Tcp = {.X = reach_begins + 60, .Y = belt_line + 60, .Z = travel_height};
-        ready_.Velocity = 300;  // deg/s: of the axes together
+        ready_.Velocity = 60;  // deg/s: of the axes together; some 400 mm/s of the gripper, which may come from anywhere
 
         // The part's frame: the belt runs along the X of its origin, which is the barrier here. InitialObjectPosition counts from the scan of the edge, so
         // it does not matter how

@@ -313,6 +313,30 @@ TEST(GroupTracking, ACommandOfTheSameScanIsMeantOnTheObject) {
     EXPECT_NEAR(rig.view().tool_set[1], start[1], 1e-9);
 }
 
+// All members leave at once in the middle of it (an emergency stop, a lost bus): nobody is left to be brought to rest. What the group did with the belt is forgotten, and the next command
+// begins from rest where the members are; the rig sees a jump.
+TEST(GroupTracking, WhenAllMembersLeaveAtOnceTheBeltIsForgotten) {
+    TrackRig rig(3, cartesian_arm());
+    rig.drive_belt(20);
+    rig.run(500);
+    ASSERT_EQ(rig.track({0, 0, 0, 0, 0, 0}, {10, 5, 0, 0, 0, 0}).error, ErrorId::none);
+    const auto down = rig.give(on_product(line({0, 0, 4}, 30)));
+    ASSERT_TRUE(rig.done(down.id));
+    rig.run(50);
+    for (std::size_t i = 0; i < 3; ++i) rig.axes[i].demand_emergency_stop(EmergencyStop::stop);
+    rig.run(1000);
+    EXPECT_EQ(rig.view().state, GroupErrorStop);
+    EXPECT_FALSE(rig.view().track.axis.valid());
+    for (std::size_t i = 0; i < 3; ++i) rig.axes[i].demand_emergency_stop(EmergencyStop::none);
+    EXPECT_EQ(rig.groups.reset(GroupRig::ref, Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 5000));
+    const auto at = rig.point();
+    const auto away = rig.give(
+        {.kind = GroupCommandKind::linear_absolute, .frame = mcMCS, .target = {at[0] + 1, at[1], at[2]}, .dynamics = {.velocity = 50}});
+    ASSERT_TRUE(rig.done(away.id)) << static_cast<int>(rig.error_of(away.id));
+    EXPECT_NEAR(rig.point()[0], at[0] + 1, 1e-9);
+}
+
 // G-084: an encoder measures the belt: what it says is as old as its latch, and set-points act a cycle later; both are made up for. The belt really is
 // 30 u/s * 1 ms = 0.03 u further for each cycle of them.
 TEST(GroupTracking, WhatAnEncoderSaysIsTakenOnToWhereSetPointsAct) {
