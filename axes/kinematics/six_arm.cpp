@@ -18,6 +18,13 @@ double distance(const Joints& a, const Joints& b) noexcept {
     return most;
 }
 
+/// Whether they are one way: that of two joints which differ says it already.
+bool same(const Joints& a, const Joints& b) noexcept {
+    for (std::size_t i = 0; i < 6; ++i)
+        if (!(std::abs(std::remainder(a[i] - b[i], 2 * std::numbers::pi)) < same_way)) return false;
+    return true;
+}
+
 Joints principal_of(Joints joints) noexcept {
     for (double& j : joints) j = principal(std::remainder(j, 2 * std::numbers::pi));
     return joints;
@@ -64,7 +71,7 @@ ArmSolutions SixArm::solve(const Frame<double>& flange, const Joints& near) cons
         if (!r.ok()) return found.missed(KinematicFault::no_convergence, r.left);
         const Joints joints = principal_of(r.joints);
         for (int k = 0; k < found.count; ++k)
-            if (distance(joints, found.at[static_cast<std::size_t>(k)].joints) < same_way) return;
+            if (same(joints, found.at[static_cast<std::size_t>(k)].joints)) return;
         found.add(joints, branch(joints));
     };
     add(near);
@@ -74,10 +81,15 @@ ArmSolutions SixArm::solve(const Frame<double>& flange, const Joints& near) cons
 
 ArmSolutions SixArm::solve_one(const Frame<double>& flange, const Branch& wanted, const Joints& near) const noexcept {
     if (exact_) return solve_nominal(flange, near);
-    ArmSolutions seeds = solve_nominal(flange, near);
-    const auto begin = seeds.at.begin(), end = begin + seeds.count;
+    const ArmSolutions seeds = solve_nominal(flange, near);
     const auto rank = [&](const ArmSolution& s) { return distance(s.joints, near) + (answers(s.branch, wanted) ? 0 : 10); };
-    std::sort(begin, end, [&](const ArmSolution& a, const ArmSolution& b) { return rank(a) < rank(b); });
+    struct Ranked {
+        double rank = 0;
+        const ArmSolution* way = nullptr;
+    };
+    std::array<Ranked, std::tuple_size_v<decltype(seeds.at)>> ranked;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(seeds.count); ++i) ranked[i] = {rank(seeds.at[i]), &seeds.at[i]};
+    std::sort(ranked.begin(), ranked.begin() + seeds.count, [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });
     ArmSolutions found;
     found.miss = seeds.miss;
     int steps = max_refine_steps_in_all;
@@ -90,10 +102,10 @@ ArmSolutions SixArm::solve_one(const Frame<double>& flange, const Branch& wanted
         return answers(branch(joints), wanted);
     };
     // The joints that it comes from first, as long as the neighbour's nearest way is not far from them: then they are the better seed.
-    const bool close = seeds.count == 0 || distance(seeds.at[0].joints, near) < 0.2;
+    const bool close = seeds.count == 0 || distance(ranked[0].way->joints, near) < 0.2;
     if (close && answers(branch(near), wanted) && add(near)) return found;
     for (int i = 0; i < seeds.count && found.count < 8 && steps > 0; ++i)
-        if (add(seeds.at[static_cast<std::size_t>(i)].joints)) break;
+        if (add(ranked[static_cast<std::size_t>(i)].way->joints)) break;
     return found;
 }
 

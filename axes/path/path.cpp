@@ -47,8 +47,8 @@ PathFeed slower(const PathFeed& a, const PathFeed& b) {
 }  // namespace
 
 std::size_t Path::index_at(double s) const noexcept {
-    const auto behind = std::upper_bound(sections_.begin(), sections_.end(), s, [](double x, const PathSection& p) { return x < p.begin; });
-    return behind == sections_.begin() ? 0 : static_cast<std::size_t>(behind - sections_.begin()) - 1;
+    const auto behind = std::upper_bound(begins_.begin(), begins_.end(), s);
+    return behind == begins_.begin() ? 0 : static_cast<std::size_t>(behind - begins_.begin()) - 1;
 }
 
 void Path::append_over(const PathSection& curve, double before, const PathMove& move, double behind) {
@@ -68,8 +68,8 @@ void Path::append_over(const PathSection& curve, double before, const PathMove& 
     next.from = behind;
     next.begin = corner.end();
     next.length = move.element.length() - behind;
-    sections_.push_back(corner);
-    sections_.push_back(next);
+    push(corner);
+    push(next);
 }
 
 Result<PathJoint> Path::append(const PathMove& move, const BlendRequest& transition, double frozen) {
@@ -82,7 +82,7 @@ Result<PathJoint> Path::append(const PathMove& move, const BlendRequest& transit
     next.command = move.command;
     next.length = move.element.length();
     if (sections_.empty()) {
-        sections_.push_back(next);
+        push(next);
         return PathJoint::first;
     }
     PathSection& last = sections_.back();
@@ -113,8 +113,9 @@ Result<PathJoint> Path::append(const PathMove& move, const BlendRequest& transit
             corner.begin = last.begin;
             corner.stop_before = last.stop_before;
             sections_.pop_back();
+            begins_.pop_back();
         }
-        sections_.push_back(corner);
+        push(corner);
         next.from = curve->behind;
         next.length -= curve->behind;
     } else if (meet_smoothly(first, second)) {
@@ -123,7 +124,7 @@ Result<PathJoint> Path::append(const PathMove& move, const BlendRequest& transit
         next.stop_before = true;
     }
     next.begin = sections_.back().end();
-    sections_.push_back(next);
+    push(next);
     return joint;
 }
 

@@ -69,7 +69,10 @@ public:
     [[nodiscard]] std::size_t index_at(double s) const noexcept;
 
     /// Takes out the first `count` sections, which nobody goes any more; the others stay where they are.
-    void forget(std::size_t count) { sections_.erase(sections_.begin(), sections_.begin() + static_cast<std::ptrdiff_t>(count)); }
+    void forget(std::size_t count) {
+        sections_.erase(sections_.begin(), sections_.begin() + static_cast<std::ptrdiff_t>(count));
+        begins_.erase(begins_.begin(), begins_.begin() + static_cast<std::ptrdiff_t>(count));
+    }
 
     /// To take an append() back.
     struct Mark {
@@ -79,13 +82,24 @@ public:
     [[nodiscard]] Mark mark() const noexcept { return sections_.empty() ? Mark{} : Mark{sections_.size(), sections_.back()}; }
     void back_to(const Mark& mark) {
         sections_.resize(mark.count);
+        begins_.resize(mark.count);
         if (mark.count > 0) sections_.back() = mark.last;
+        if (mark.count > 0) begins_.back() = mark.last.begin;
     }
 
-    void clear() noexcept { sections_.clear(); }
+    void clear() noexcept {
+        sections_.clear();
+        begins_.clear();
+    }
 
 private:
+    void push(const PathSection& section) {
+        sections_.push_back(section);
+        begins_.push_back(section.begin);
+    }
+
     std::vector<PathSection> sections_;
+    std::vector<double> begins_;  // of them: who searches a place reads these alone
 };
 
 }  // namespace taktwerk::axes
