@@ -5,8 +5,7 @@
 //     ready ---> pick: track, above, down | suck | up ---> place: over, down | let go | up ---> ready ...
 //
 // Whatever stops the arm (a fault, a person), it goes on when a person says so: by the switch `picks`, after a reset where there was an error. It goes
-// straight up first, and a
-// part that hangs on it is laid down where it was meant to go.
+// straight up first, and a part that hangs on it is laid down where it was meant to go.
 
 #include <algorithm>
 #include <array>
@@ -60,26 +59,29 @@ class DeltaPicker final : public Program {
     Output<bool> vacuum_, tray_full_;
     Parameter belt_speed_;
 
-    // Power and reference.
-    MC_GroupPower power_;
-    std::array<MC_Home, arms> homes_;
-    MC_GroupEnable enable_;
-    MC_GroupReadStatus status_;
-    MC_GroupReadPosition place_;
-    MC_Power belt_power_;
-    // The belt and its parts.
-    MC_MoveVelocity feed_;
-    MC_Halt halt_;
-    MC_TouchProbe probe_;
-    PartsOnBelt parts_;
-    // The arm, in the order of a round.
-    MC_MoveLinearRelative raise_;
-    MC_MoveDirectAbsolute ready_;
-    MC_TrackConveyorBelt track_;
-    MC_MoveLinearAbsolute to_part_, onto_part_, off_belt_;
-    MC_GroupWaitTime sucking_;
-    MC_MoveLinearAbsolute over_slot_, into_slot_, off_slot_;
-    MC_GroupWaitTime letting_go_;
+    struct {  // power and reference
+        MC_GroupPower power;
+        std::array<MC_Home, arms> homes;
+        MC_GroupEnable enable;
+        MC_GroupReadStatus status;
+        MC_GroupReadPosition place;
+        MC_Power belt_power;
+    } up_;
+    struct {  // the belt and its parts
+        MC_MoveVelocity feed;
+        MC_Halt halt;
+        MC_TouchProbe probe;
+        PartsOnBelt parts;
+    } line_;
+    struct {  // the arm, in the order of a round
+        MC_MoveLinearRelative raise;
+        MC_MoveDirectAbsolute ready;
+        MC_TrackConveyorBelt track;
+        MC_MoveLinearAbsolute to_part, onto_part, off_belt;
+        MC_GroupWaitTime sucking;
+        MC_MoveLinearAbsolute over_slot, into_slot, off_slot;
+        MC_GroupWaitTime letting_go;
+    } go_;
     TON exchange_;
     R_TRIG pressed_;
 
@@ -91,8 +93,9 @@ class DeltaPicker final : public Program {
     bool carries_ = false;   ///< a part is off the belt and not in the tray yet
     bool armed_ = false;     ///< a probe waits, or will from this scan on
     std::int64_t slot_ = 0;  ///< the next one of the tray
-    std::int64_t picked_ = 0, placed_ = 0, missed_ = 0, empty_ = 0, broken_ = 0, trays_ = 0;
-    std::int64_t waiting_ = 0, error_ = 0;
+    struct {                 // for people
+        std::int64_t picked = 0, placed = 0, missed = 0, empty = 0, broken = 0, trays = 0, waiting = 0, missed_in_a_row = 0, error = 0;
+    } count_;
 
 public:
     void declare(Declaration& d) override {
@@ -107,17 +110,17 @@ public:
         tray_full_ = d.output("tray_full");
         belt_speed_ = d.parameter("belt_speed", {.value = 90, .minimum = 10, .maximum = 250, .unit = "mm/s", .doc = "of the parts"});
         d.operator_switch("picks", picks_, {.doc = "belt and arm work; a stop and an error switch it off"});
-        d.monitor("waiting", waiting_, "", "parts between light barrier and arm");
-        d.monitor("picked", picked_, "", "parts taken off the belt since start");
-        d.monitor("placed", placed_, "", "parts laid into trays");
-        d.monitor("missed", missed_, "", "parts that had gone by before the arm was free");
-        d.monitor("empty", empty_, "", "picks after which nothing hung on the gripper");
-        d.monitor("broken", broken_, "", "rounds that were broken off");
-        d.monitor("trays", trays_, "", "filled");
-        d.monitor("error", error_, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
-        d.block("track", track_);
-        d.block("onto_part", onto_part_);
-        d.block("into_slot", into_slot_);
+        d.monitor("waiting", count_.waiting, "", "parts between light barrier and arm");
+        d.monitor("picked", count_.picked, "", "parts taken off the belt since start");
+        d.monitor("placed", count_.placed, "", "parts laid into trays");
+        d.monitor("missed", count_.missed, "", "parts that had gone by before the arm was free");
+        d.monitor("empty", count_.empty, "", "picks after which nothing hung on the gripper");
+        d.monitor("broken", count_.broken, "", "rounds that were broken off");
+        d.monitor("trays", count_.trays, "", "filled");
+        d.monitor("error", count_.error, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
+        d.block("track", go_.track);
+        d.block("onto_part", go_.onto_part);
+        d.block("into_slot", go_.into_slot);
         d.alarm(0, Reaction::warn, "The arm was stopped on its way and waits for a person", "机械臂中途停止，等待人工操作",
                 "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then press `go_on` "
                 "(or switch `picks` on): it goes straight up first");
@@ -127,24 +130,24 @@ public:
 
     void start() override {
         // The vacuum stays as it is: what hangs on the gripper would fall.
-        parts_.clear();
+        line_.parts.clear();
         armed_ = stopped_ = false;
         picks_ = true;
         enter(Step::raise);
-        for (auto& home : homes_) home.Execute = false;
-        enable_.Execute = false;
+        for (auto& home : up_.homes) home.Execute = false;
+        up_.enable.Execute = false;
     }
 
     void scan(TaskContext& ctx) {
-        for (auto* group :
-             {&power_.AxesGroup, &enable_.AxesGroup, &status_.AxesGroup, &place_.AxesGroup, &raise_.AxesGroup, &ready_.AxesGroup,
-              &track_.AxesGroup, &to_part_.AxesGroup, &onto_part_.AxesGroup, &off_belt_.AxesGroup, &sucking_.AxesGroup,
-              &over_slot_.AxesGroup, &into_slot_.AxesGroup, &off_slot_.AxesGroup, &letting_go_.AxesGroup})
+        for (auto* group : {&up_.power.AxesGroup, &up_.enable.AxesGroup, &up_.status.AxesGroup, &up_.place.AxesGroup, &go_.raise.AxesGroup,
+                            &go_.ready.AxesGroup, &go_.track.AxesGroup, &go_.to_part.AxesGroup, &go_.onto_part.AxesGroup,
+                            &go_.off_belt.AxesGroup, &go_.sucking.AxesGroup, &go_.over_slot.AxesGroup, &go_.into_slot.AxesGroup,
+                            &go_.off_slot.AxesGroup, &go_.letting_go.AxesGroup})
             *group = delta_;
         const bool ready = power(ctx);
         pressed_.CLK = ctx.get(go_on_);
         pressed_(ctx);
-        if (pressed_.Q && !status_.GroupErrorStop) picks_ = true;
+        if (pressed_.Q && !up_.status.GroupErrorStop) picks_ = true;
         if (picks_) stopped_ = false;
         run_belt(ctx, ready && picks_);
         watch_barrier(ctx);
@@ -153,33 +156,31 @@ public:
         ctx.set(vacuum_, sucks_);
         ctx.set(tray_full_, step_ == Step::change_tray);
         ctx.alarm(0, stopped_);
-        ctx.alarm(1, missed_in_a_row_ >= 5);
-        waiting_ = static_cast<std::int64_t>(parts_.count());
+        ctx.alarm(1, count_.missed_in_a_row >= 5);
+        count_.waiting = static_cast<std::int64_t>(line_.parts.count());
     }
 
 private:
-    std::int64_t missed_in_a_row_ = 0;
-
     /// All that has to be so before anything moves.
     bool power(TaskContext& ctx) {
-        power_.Enable = status_.Enable = place_.Enable = true;
-        power_(ctx);
+        up_.power.Enable = up_.status.Enable = up_.place.Enable = true;
+        up_.power(ctx);
         bool homed = true;
         for (std::size_t i = 0; i < arms; ++i) {
-            homes_[i].Axis = axes_[i];
-            homes_[i].Execute = power_.Status && !ctx.view(axes_[i])->homed;
-            homes_[i](ctx);
-            homed = homed && ctx.view(axes_[i])->homed && !homes_[i].Busy;
+            up_.homes[i].Axis = axes_[i];
+            up_.homes[i].Execute = up_.power.Status && !ctx.view(axes_[i])->homed;
+            up_.homes[i](ctx);
+            homed = homed && ctx.view(axes_[i])->homed && !up_.homes[i].Busy;
         }
-        enable_.Execute = power_.Status && homed;
-        enable_(ctx);
-        status_(ctx);
-        place_.CoordSystem = mcMCS;
-        place_(ctx);
-        belt_power_.Axis = belt_;
-        belt_power_.Enable = true;
-        belt_power_(ctx);
-        return power_.Status && homed && belt_power_.Status && place_.Valid && (status_.GroupStandby || status_.GroupMoving);
+        up_.enable.Execute = up_.power.Status && homed;
+        up_.enable(ctx);
+        up_.status(ctx);
+        up_.place.CoordSystem = mcMCS;
+        up_.place(ctx);
+        up_.belt_power.Axis = belt_;
+        up_.belt_power.Enable = true;
+        up_.belt_power(ctx);
+        return up_.power.Status && homed && up_.belt_power.Status && up_.place.Valid && (up_.status.GroupStandby || up_.status.GroupMoving);
     }
 
     /// Somebody has to look, and to say that it may go on.
@@ -187,26 +188,27 @@ private:
 
     /// It stands while the arm cannot work: no part goes by because of that.
     void run_belt(TaskContext& ctx, bool run) {
-        if (feed_.Execute && (feed_.Error || feed_.CommandAborted)) wait_for_a_person();  // not by this program: by a person, or a fault
-        feed_.Axis = halt_.Axis = belt_;
-        feed_.Velocity = ctx.get(belt_speed_);
-        feed_.ContinuousUpdate = true;
-        feed_.Execute = run;
-        feed_(ctx);
-        halt_.Execute = belt_power_.Status && !run;
-        halt_(ctx);
+        if (line_.feed.Execute && (line_.feed.Error || line_.feed.CommandAborted))
+            wait_for_a_person();  // not by this program: by a person, or a fault
+        line_.feed.Axis = line_.halt.Axis = belt_;
+        line_.feed.Velocity = ctx.get(belt_speed_);
+        line_.feed.ContinuousUpdate = true;
+        line_.feed.Execute = run;
+        line_.feed(ctx);
+        line_.halt.Execute = up_.belt_power.Status && !run;
+        line_.halt(ctx);
     }
 
     /// Each part at the barrier becomes a number. Parts have to be a few cycles apart, so that the probe is armed again.
     void watch_barrier(TaskContext& ctx) {
-        if (probe_.Done && !parts_.add(probe_.RecordedPosition)) ++missed_;
-        if (probe_.Done || probe_.Error || probe_.CommandAborted) armed_ = false;
-        probe_.Axis = belt_;
-        probe_.TriggerInput = {.source = axes::TriggerSource::probe1};
-        probe_.Execute = armed_;  // each part is an edge of its own
-        probe_(ctx);
-        armed_ = belt_power_.Status;
-        if (!belt_power_.Status) parts_.clear();  // it may have been moved by hand: what lies on it now goes by
+        if (line_.probe.Done && !line_.parts.add(line_.probe.RecordedPosition)) ++count_.missed;
+        if (line_.probe.Done || line_.probe.Error || line_.probe.CommandAborted) armed_ = false;
+        line_.probe.Axis = belt_;
+        line_.probe.TriggerInput = {.source = axes::TriggerSource::probe1};
+        line_.probe.Execute = armed_;  // each part is an edge of its own
+        line_.probe(ctx);
+        armed_ = up_.belt_power.Status;
+        if (!up_.belt_power.Status) line_.parts.clear();  // it may have been moved by hand: what lies on it now goes by
     }
 
     /// The belt as the arm sees it: its set-point. The arm's drives are behind their set-points as the belt's is behind its own.
@@ -223,12 +225,12 @@ private:
         const bool begins = !fresh_ && !begun_ && ready;
         fresh_ = false;
         begun_ = begun_ || begins;
-        raise_.Execute = begun_ && step_ == Step::raise;
-        ready_.Execute = begun_ && step_ == Step::ready;
-        track_.Execute = begun_ && step_ == Step::track;
+        go_.raise.Execute = begun_ && step_ == Step::raise;
+        go_.ready.Execute = begun_ && step_ == Step::ready;
+        go_.track.Execute = begun_ && step_ == Step::track;
         // All of them in one scan: the queue keeps their order, and the corner above the part is passed on a curve.
-        to_part_.Execute = onto_part_.Execute = sucking_.Execute = off_belt_.Execute = begun_ && step_ == Step::pick;
-        over_slot_.Execute = into_slot_.Execute = letting_go_.Execute = off_slot_.Execute = begun_ && step_ == Step::place;
+        go_.to_part.Execute = go_.onto_part.Execute = go_.sucking.Execute = go_.off_belt.Execute = begun_ && step_ == Step::pick;
+        go_.over_slot.Execute = go_.into_slot.Execute = go_.letting_go.Execute = go_.off_slot.Execute = begun_ && step_ == Step::place;
         call(ctx);
         if (step_ == Step::wait && ready && picks_) choose_part(ctx);
         next(ctx);
@@ -236,65 +238,66 @@ private:
 
     void choose_part(const TaskContext& ctx) {
         const double belt = belt_now(ctx);
-        while (!parts_.empty() && barrier + parts_.oldest(belt) > reach_ends) {
-            parts_.remove_oldest();
-            ++missed_, ++missed_in_a_row_;
+        while (!line_.parts.empty() && barrier + line_.parts.oldest(belt) > reach_ends) {
+            line_.parts.remove_oldest();
+            ++count_.missed, ++count_.missed_in_a_row;
         }
-        if (!parts_.empty() && barrier + parts_.oldest(belt) >= reach_begins) enter(Step::track);
+        if (!line_.parts.empty() && barrier + line_.parts.oldest(belt) >= reach_begins) enter(Step::track);
     }
 
     /// Where everything goes. Told in each scan; a command keeps what stood here at its edge.
     void describe(TaskContext& ctx) {
-        raise_.CoordSystem = ready_.CoordSystem = mcMCS;
+        go_.raise.CoordSystem = go_.ready.CoordSystem = mcMCS;
         // Relative, so that it is straight up from where the arm comes to rest; no way at all when it is up.
-        if (step_ != Step::raise || !begun_) raise_.Distance.C.Tcp = {.Z = std::max(travel_height - place_.Position.C.Tcp.Z, 0.0)};
-        raise_.Velocity = 200;
-        ready_.Position.C.Tcp = {.X = reach_begins + 60, .Y = belt_line + 60, .Z = travel_height};
-        ready_.Velocity = 60;  // deg/s: of the axes together; some 400 mm/s of the gripper, which may come from anywhere
+        if (step_ != Step::raise || !begun_) go_.raise.Distance.C.Tcp = {.Z = std::max(travel_height - up_.place.Position.C.Tcp.Z, 0.0)};
+        go_.raise.Velocity = 200;
+        go_.ready.Position.C.Tcp = {.X = reach_begins + 60, .Y = belt_line + 60, .Z = travel_height};
+        go_.ready.Velocity = 60;  // deg/s: of the axes together; some 400 mm/s of the gripper, which may come from anywhere
 
         // The part's frame: the belt runs along the X of its origin, which is the barrier here. InitialObjectPosition counts from the scan of the edge, so
         // it does not matter how
         // long ago the barrier saw the part. Its origin is the middle of the part's top.
-        track_.ConveyorBelt = belt_;
-        track_.ConveyorBeltOrigin = {.X = barrier, .Y = belt_line, .Z = belt_height + part_height};
-        if (!parts_.empty()) track_.InitialObjectPosition.X = parts_.oldest(belt_now(ctx));
-        track_.CoordSystem = mcPCS;
-        for (auto* on_belt : {&to_part_, &onto_part_, &off_belt_}) on_belt->CoordSystem = mcPCS;
-        to_part_.Position.C.Tcp = off_belt_.Position.C.Tcp = {.Z = above};
-        onto_part_.Position.C.Tcp = {};
-        sucking_.Duration = 80ms;  // until the vacuum has built up; the arm goes with the part meanwhile
+        go_.track.ConveyorBelt = belt_;
+        go_.track.ConveyorBeltOrigin = {.X = barrier, .Y = belt_line, .Z = belt_height + part_height};
+        if (!line_.parts.empty()) go_.track.InitialObjectPosition.X = line_.parts.oldest(belt_now(ctx));
+        go_.track.CoordSystem = mcPCS;
+        for (auto* on_belt : {&go_.to_part, &go_.onto_part, &go_.off_belt}) on_belt->CoordSystem = mcPCS;
+        go_.to_part.Position.C.Tcp = go_.off_belt.Position.C.Tcp = {.Z = above};
+        go_.onto_part.Position.C.Tcp = {};
+        go_.sucking.Duration = 80ms;  // until the vacuum has built up; the arm goes with the part meanwhile
 
         const double x = pitch * static_cast<double>(slot_ % columns), y = pitch * static_cast<double>(slot_ / columns);
-        for (auto* over_tray : {&over_slot_, &into_slot_, &off_slot_}) over_tray->CoordSystem = mcPCS_2;  // of the machine file: the tray
-        over_slot_.Position.C.Tcp = off_slot_.Position.C.Tcp = {.X = x, .Y = y, .Z = part_height + above};
-        into_slot_.Position.C.Tcp = {.X = x, .Y = y, .Z = part_height + 0.5};  // it falls the last half millimetre
-        letting_go_.Duration = 60ms;
+        for (auto* over_tray : {&go_.over_slot, &go_.into_slot, &go_.off_slot})
+            over_tray->CoordSystem = mcPCS_2;  // of the machine file: the tray
+        go_.over_slot.Position.C.Tcp = go_.off_slot.Position.C.Tcp = {.X = x, .Y = y, .Z = part_height + above};
+        go_.into_slot.Position.C.Tcp = {.X = x, .Y = y, .Z = part_height + 0.5};  // it falls the last half millimetre
+        go_.letting_go.Duration = 60ms;
 
-        for (auto* later : {&onto_part_, &into_slot_}) {  // the corner above is rounded, from 20 mm before it on
+        for (auto* later : {&go_.onto_part, &go_.into_slot}) {  // the corner above is rounded, from 20 mm before it on
             later->BufferMode = mcBlendingHigh;
             later->TransitionMode = mcTMCornerDistance;
             later->TransitionParameter.Parameter[0] = 20;
             later->Velocity = 600;
         }
-        off_belt_.BufferMode = off_slot_.BufferMode = mcBuffered;
-        sucking_.BufferMode = letting_go_.BufferMode = mcBuffered;
+        go_.off_belt.BufferMode = go_.off_slot.BufferMode = mcBuffered;
+        go_.sucking.BufferMode = go_.letting_go.BufferMode = mcBuffered;
         // In another frame than the one before: the arm lets the belt go, comes to rest, and begins from there. Aborting would do the same to a command
         // that is not over.
-        over_slot_.BufferMode = mcBuffered;
+        go_.over_slot.BufferMode = mcBuffered;
     }
 
     void call(TaskContext& ctx) {
-        raise_(ctx);
-        ready_(ctx);
-        track_(ctx);
-        to_part_(ctx);
-        onto_part_(ctx);
-        sucking_(ctx);
-        off_belt_(ctx);
-        over_slot_(ctx);
-        into_slot_(ctx);
-        letting_go_(ctx);
-        off_slot_(ctx);
+        go_.raise(ctx);
+        go_.ready(ctx);
+        go_.track(ctx);
+        go_.to_part(ctx);
+        go_.onto_part(ctx);
+        go_.sucking(ctx);
+        go_.off_belt(ctx);
+        go_.over_slot(ctx);
+        go_.into_slot(ctx);
+        go_.letting_go(ctx);
+        go_.off_slot(ctx);
     }
 
     /// A round that has begun is ended: no part hangs in the air because somebody switches `picks` off.
@@ -306,58 +309,59 @@ private:
             const auto one = [&](const auto& b) {
                 if (over || !(b.Error || b.CommandAborted)) return;
                 over = true;
-                error_ = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
+                count_.error = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
             };
             (one(block), ...);
         };
-        return look(raise_, ready_, track_, to_part_, onto_part_, sucking_, off_belt_, over_slot_, into_slot_, letting_go_, off_slot_),
+        return look(go_.raise, go_.ready, go_.track, go_.to_part, go_.onto_part, go_.sucking, go_.off_belt, go_.over_slot, go_.into_slot,
+                    go_.letting_go, go_.off_slot),
                over;
     }
 
     void next(TaskContext& ctx) {
         if (begun_ && broken()) {
             if (!carries_) sucks_ = false;
-            if ((step_ == Step::track || step_ == Step::pick) && !carries_ && !parts_.empty())
-                parts_.remove_oldest();  // it is not tried twice
+            if ((step_ == Step::track || step_ == Step::pick) && !carries_ && !line_.parts.empty())
+                line_.parts.remove_oldest();  // it is not tried twice
             // A part out of reach is one part. Everything else is something that a person has to look at.
-            const bool of_the_part = (to_part_.Error || track_.Error) && !status_.GroupErrorStop;
+            const bool of_the_part = (go_.to_part.Error || go_.track.Error) && !up_.status.GroupErrorStop;
             if (!of_the_part) wait_for_a_person();
-            ++broken_;
+            ++count_.broken;
             return enter(Step::raise);
         }
         switch (step_) {
             case Step::raise:
-                if (raise_.Done) enter(carries_ ? Step::place : Step::ready);
+                if (go_.raise.Done) enter(carries_ ? Step::place : Step::ready);
                 break;
             case Step::ready:
-                if (ready_.Done) enter(Step::wait);
+                if (go_.ready.Done) enter(Step::wait);
                 break;
             case Step::wait: break;
             case Step::track:
-                if (track_.Done) enter(Step::pick);
+                if (go_.track.Done) enter(Step::pick);
                 break;
             case Step::pick:
-                if (onto_part_.Done) sucks_ = true;  // Done: at its place, and in step with the belt
-                if (sucking_.Done && !carries_) {
+                if (go_.onto_part.Done) sucks_ = true;  // Done: at its place, and in step with the belt
+                if (go_.sucking.Done && !carries_) {
                     carries_ = true;
-                    parts_.remove_oldest();
-                    missed_in_a_row_ = 0;
+                    line_.parts.remove_oldest();
+                    count_.missed_in_a_row = 0;
                 }
-                if (!off_belt_.Done) break;
+                if (!go_.off_belt.Done) break;
                 if (!ctx.get(gripped_)) sucks_ = carries_ = false;
-                ++(carries_ ? picked_ : empty_);
+                ++(carries_ ? count_.picked : count_.empty);
                 enter(carries_ ? Step::place : Step::ready);
                 break;
             case Step::place:
-                if (into_slot_.Done && carries_) {
+                if (go_.into_slot.Done && carries_) {
                     sucks_ = carries_ = false;
-                    ++placed_, ++slot_;
+                    ++count_.placed, ++slot_;
                 }
-                if (off_slot_.Done) enter(slot_ < columns * rows ? Step::wait : Step::change_tray);
+                if (go_.off_slot.Done) enter(slot_ < columns * rows ? Step::wait : Step::change_tray);
                 break;
             case Step::change_tray:
                 if (exchange_.Q) {
-                    ++trays_;
+                    ++count_.trays;
                     slot_ = 0;
                     enter(Step::ready);
                 }

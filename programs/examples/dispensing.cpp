@@ -1,6 +1,5 @@
 // A gantry lays a bead of sealant onto covers, along lines and arcs. The bead is as thick everywhere because the pump turns with the length of the path
-// (MC_SyncAxisToGroup), not with time: what
-// slows the nozzle down (a corner, an override, a person who holds it) slows the pump down alike.
+// (MC_SyncAxisToGroup), not with time: what slows the nozzle down (a corner, an override, a person who holds it) slows the pump down alike.
 //
 //     (0,100) ----------- (160,100)      the drawing, mm in the cover's frame: two sharp corners, cut by `corner`;
 //        |                    |          two arcs of 20 mm, into which the lines lead without a corner
@@ -45,23 +44,26 @@ class Dispensing final : public Program {
     Output<bool> valve_, cover_done_;
     Parameter speed_, bead_, corner_;
 
-    MC_GroupPower power_;
-    std::array<MC_Home, members> homes_;
-    MC_GroupEnable enable_;
-    MC_GroupReadStatus status_;
-    MC_GroupReadPosition place_;
-    MC_Power pump_power_;
-    // A round, in its order.
-    MC_MoveDirectRelative raise_;
-    MC_MoveDirectAbsolute square_;
-    MC_MoveLinearAbsolute over_, down_;
-    MC_MoveRelative prime_;
-    MC_SyncAxisToGroup sync_;
-    MC_MoveLinearAbsolute along_bottom_, up_right_, along_top_, down_left_, to_end_;
-    MC_MoveCircularAbsolute right_arc_, left_arc_;
-    MC_MoveRelative draw_back_;
-    MC_Halt pump_halt_;
-    MC_MoveLinearAbsolute leave_;
+    struct {  // power and reference
+        MC_GroupPower power;
+        std::array<MC_Home, members> homes;
+        MC_GroupEnable enable;
+        MC_GroupReadStatus status;
+        MC_GroupReadPosition place;
+        MC_Power pump_power;
+    } up_;
+    struct {  // a round, in its order
+        MC_MoveDirectRelative raise;
+        MC_MoveDirectAbsolute square;
+        MC_MoveLinearAbsolute over, down;
+        MC_MoveRelative prime;
+        MC_SyncAxisToGroup sync;
+        MC_MoveLinearAbsolute along_bottom, up_right, along_top, down_left, to_end;
+        MC_MoveCircularAbsolute right_arc, left_arc;
+        MC_MoveRelative draw_back;
+        MC_Halt pump_halt;
+        MC_MoveLinearAbsolute leave;
+    } go_;
     TON exchange_;
     R_TRIG pressed_;
 
@@ -71,8 +73,10 @@ class Dispensing final : public Program {
     bool works_ = true, stopped_ = false;
     bool primed_ = false;  ///< the pump has not been drawn back since it was turned forth
     bool open_ = false;
-    std::int64_t covers_ = 0, spoiled_ = 0, error_ = 0;
-    double pumped_ = 0, pump_began_ = 0;
+    struct {  // for people
+        std::int64_t covers = 0, spoiled = 0, error = 0;
+        double pumped = 0, pump_began = 0;  // mm3, deg
+    } count_;
 
 public:
     void declare(Declaration& d) override {
@@ -89,12 +93,12 @@ public:
         corner_ = d.parameter("corner",
                               {.value = 2, .minimum = 0, .maximum = 5, .unit = "mm", .doc = "by which the sharp corners are cut at most"});
         d.operator_switch("works", works_, {.doc = "covers are worked on; a stop and an error switch it off"});
-        d.monitor("covers", covers_, "", "with a whole bead, since start");
-        d.monitor("spoiled", spoiled_, "", "covers whose bead was broken off");
-        d.monitor("error", error_, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
-        d.monitor("pumped", pumped_, "mm3", "of the bead under way, or of the last one");
-        d.block("sync", sync_);
-        d.block("along_top", along_top_);
+        d.monitor("covers", count_.covers, "", "with a whole bead, since start");
+        d.monitor("spoiled", count_.spoiled, "", "covers whose bead was broken off");
+        d.monitor("error", count_.error, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
+        d.monitor("pumped", count_.pumped, "mm3", "of the bead under way, or of the last one");
+        d.block("sync", go_.sync);
+        d.block("along_top", go_.along_top);
         d.alarm(0, Reaction::warn, "The bead or the way to it was broken off, and the gantry waits for a person",
                 "涂胶或其路径中断，龙门等待人工操作",
                 "remove the cause (alarms of its axes and of the bus name it), take the cover away if its bead is not whole, reset, then "
@@ -106,86 +110,86 @@ public:
         open_ = stopped_ = false;
         works_ = true;
         enter(Step::raise);
-        for (auto& home : homes_) home.Execute = false;
-        enable_.Execute = sync_.Execute = false;
+        for (auto& home : up_.homes) home.Execute = false;
+        up_.enable.Execute = go_.sync.Execute = false;
     }
 
     void scan(TaskContext& ctx) {
-        for (auto* group :
-             {&power_.AxesGroup, &enable_.AxesGroup, &status_.AxesGroup, &place_.AxesGroup, &raise_.AxesGroup, &square_.AxesGroup,
-              &over_.AxesGroup, &down_.AxesGroup, &sync_.AxesGroup, &along_bottom_.AxesGroup, &right_arc_.AxesGroup, &up_right_.AxesGroup,
-              &along_top_.AxesGroup, &down_left_.AxesGroup, &left_arc_.AxesGroup, &to_end_.AxesGroup, &leave_.AxesGroup})
+        for (auto* group : {&up_.power.AxesGroup, &up_.enable.AxesGroup, &up_.status.AxesGroup, &up_.place.AxesGroup, &go_.raise.AxesGroup,
+                            &go_.square.AxesGroup, &go_.over.AxesGroup, &go_.down.AxesGroup, &go_.sync.AxesGroup,
+                            &go_.along_bottom.AxesGroup, &go_.right_arc.AxesGroup, &go_.up_right.AxesGroup, &go_.along_top.AxesGroup,
+                            &go_.down_left.AxesGroup, &go_.left_arc.AxesGroup, &go_.to_end.AxesGroup, &go_.leave.AxesGroup})
             *group = gantry_;
         const bool ready = power(ctx);
         pressed_.CLK = ctx.get(go_on_);
         pressed_(ctx);
-        if (pressed_.Q && !status_.GroupErrorStop) works_ = true;
+        if (pressed_.Q && !up_.status.GroupErrorStop) works_ = true;
         if (works_) stopped_ = false;
         describe(ctx);
         move(ctx, ready && (works_ || under_way()));
         // Whatever the sequence believes: without the pump in step with a path that is gone there is no bead.
-        ctx.set(valve_, open_ && sync_.InSync && status_.GroupMoving);
-        ctx.set(cover_done_, step_ == Step::wait && covers_ + spoiled_ > 0);
+        ctx.set(valve_, open_ && go_.sync.InSync && up_.status.GroupMoving);
+        ctx.set(cover_done_, step_ == Step::wait && count_.covers + count_.spoiled > 0);
         ctx.alarm(0, stopped_);
     }
 
 private:
     /// All that has to be so before anything moves.
     bool power(TaskContext& ctx) {
-        power_.Enable = status_.Enable = place_.Enable = true;
-        power_(ctx);
+        up_.power.Enable = up_.status.Enable = up_.place.Enable = true;
+        up_.power(ctx);
         bool homed = true;
         for (std::size_t i = 0; i < members; ++i) {
-            homes_[i].Axis = axes_[i];
-            homes_[i].Execute = power_.Status && !ctx.view(axes_[i])->homed;
-            homes_[i](ctx);
-            homed = homed && ctx.view(axes_[i])->homed && !homes_[i].Busy;
+            up_.homes[i].Axis = axes_[i];
+            up_.homes[i].Execute = up_.power.Status && !ctx.view(axes_[i])->homed;
+            up_.homes[i](ctx);
+            homed = homed && ctx.view(axes_[i])->homed && !up_.homes[i].Busy;
         }
-        enable_.Execute = power_.Status && homed;
-        enable_(ctx);
-        status_(ctx);
-        place_.CoordSystem = mcACS;
-        place_(ctx);
-        pump_power_.Axis = pump_;
-        pump_power_.Enable = true;
-        pump_power_(ctx);
-        return power_.Status && homed && pump_power_.Status && place_.Valid && (status_.GroupStandby || status_.GroupMoving);
+        up_.enable.Execute = up_.power.Status && homed;
+        up_.enable(ctx);
+        up_.status(ctx);
+        up_.place.CoordSystem = mcACS;
+        up_.place(ctx);
+        up_.pump_power.Axis = pump_;
+        up_.pump_power.Enable = true;
+        up_.pump_power(ctx);
+        return up_.power.Status && homed && up_.pump_power.Status && up_.place.Valid && (up_.status.GroupStandby || up_.status.GroupMoving);
     }
 
     /// Where everything goes. Told in each scan; a command keeps what stood here at its edge.
     void describe(TaskContext& ctx) {
         // Of the axes themselves: no path of the tool begins while the beam is askew, and it may be after a fault. Straight up first, then square, which
         // moves both ends alike but for what one lacks.
-        const auto& here = place_.Position.A.Axes;
-        raise_.CoordSystem = square_.CoordSystem = mcACS;
-        if (!begun_) raise_.Distance.A.Axes = {0, 0, 0, std::max(-here[3], 0.0)};
-        raise_.Velocity = 150;
-        if (!begun_) square_.Position.A.Axes = {std::max(here[0], 0.0), std::max(here[0], 0.0), here[2], 0};
-        square_.Velocity = 5;
+        const auto& here = up_.place.Position.A.Axes;
+        go_.raise.CoordSystem = go_.square.CoordSystem = mcACS;
+        if (!begun_) go_.raise.Distance.A.Axes = {0, 0, 0, std::max(-here[3], 0.0)};
+        go_.raise.Velocity = 150;
+        if (!begun_) go_.square.Position.A.Axes = {std::max(here[0], 0.0), std::max(here[0], 0.0), here[2], 0};
+        go_.square.Velocity = 5;
 
-        for (auto* line : {&over_, &down_, &along_bottom_, &up_right_, &along_top_, &down_left_, &to_end_, &leave_})
+        for (auto* line : {&go_.over, &go_.down, &go_.along_bottom, &go_.up_right, &go_.along_top, &go_.down_left, &go_.to_end, &go_.leave})
             line->CoordSystem = mcPCS;
-        over_.Position.C.Tcp = leave_.Position.C.Tcp = {.X = begin_x, .Y = begin_y, .Z = clearance};
-        down_.Position.C.Tcp = {.X = begin_x, .Y = begin_y, .Z = gap};
-        down_.Velocity = 150;
-        down_.BufferMode = mcBlendingHigh;
-        down_.TransitionMode = mcTMCornerDistance;
-        down_.TransitionParameter.Parameter[0] = 15;
+        go_.over.Position.C.Tcp = go_.leave.Position.C.Tcp = {.X = begin_x, .Y = begin_y, .Z = clearance};
+        go_.down.Position.C.Tcp = {.X = begin_x, .Y = begin_y, .Z = gap};
+        go_.down.Velocity = 150;
+        go_.down.BufferMode = mcBlendingHigh;
+        go_.down.TransitionMode = mcTMCornerDistance;
+        go_.down.TransitionParameter.Parameter[0] = 15;
 
-        along_bottom_.Position.C.Tcp = {.X = 140, .Y = 0, .Z = gap};
-        up_right_.Position.C.Tcp = {.X = 160, .Y = 100, .Z = gap};
-        along_top_.Position.C.Tcp = {.X = 0, .Y = 100, .Z = gap};
-        down_left_.Position.C.Tcp = {.X = 0, .Y = 20, .Z = gap};
-        to_end_.Position.C.Tcp = {.X = begin_x, .Y = begin_y, .Z = gap};
-        for (auto* arc : {&right_arc_, &left_arc_}) {
+        go_.along_bottom.Position.C.Tcp = {.X = 140, .Y = 0, .Z = gap};
+        go_.up_right.Position.C.Tcp = {.X = 160, .Y = 100, .Z = gap};
+        go_.along_top.Position.C.Tcp = {.X = 0, .Y = 100, .Z = gap};
+        go_.down_left.Position.C.Tcp = {.X = 0, .Y = 20, .Z = gap};
+        go_.to_end.Position.C.Tcp = {.X = begin_x, .Y = begin_y, .Z = gap};
+        for (auto* arc : {&go_.right_arc, &go_.left_arc}) {
             arc->CoordSystem = mcPCS;
             arc->CircMode = mcCENTER;
             arc->PathChoice = mcCounterClockwise;
         }
-        right_arc_.AuxPoint.C.Tcp = {.X = 140, .Y = 20, .Z = gap};
-        right_arc_.EndPoint.C.Tcp = {.X = 160, .Y = 20, .Z = gap};
-        left_arc_.AuxPoint.C.Tcp = {.X = 20, .Y = 20, .Z = gap};
-        left_arc_.EndPoint.C.Tcp = {.X = 20, .Y = 0, .Z = gap};
+        go_.right_arc.AuxPoint.C.Tcp = {.X = 140, .Y = 20, .Z = gap};
+        go_.right_arc.EndPoint.C.Tcp = {.X = 160, .Y = 20, .Z = gap};
+        go_.left_arc.AuxPoint.C.Tcp = {.X = 20, .Y = 20, .Z = gap};
+        go_.left_arc.EndPoint.C.Tcp = {.X = 20, .Y = 0, .Z = gap};
         // How the corner in front of each is passed. Where a line leads into an arc there is none, but without a curve the nozzle would have to stand
         // there: what makes it turn would be there at once.
         const auto pass = [&](auto& move, double deviation) {
@@ -194,22 +198,22 @@ private:
             move.TransitionMode = mcTMMaxCornerDeviation;
             move.TransitionParameter.Parameter[0] = deviation;
         };
-        along_bottom_.Velocity = ctx.get(speed_);
+        go_.along_bottom.Velocity = ctx.get(speed_);
         constexpr double smooth = 0.1;
-        pass(right_arc_, smooth);
-        pass(up_right_, smooth);
-        pass(along_top_, ctx.get(corner_));
-        pass(down_left_, ctx.get(corner_));
-        pass(left_arc_, smooth);
-        pass(to_end_, smooth);
+        pass(go_.right_arc, smooth);
+        pass(go_.up_right, smooth);
+        pass(go_.along_top, ctx.get(corner_));
+        pass(go_.down_left, ctx.get(corner_));
+        pass(go_.left_arc, smooth);
+        pass(go_.to_end, smooth);
 
-        prime_.Axis = draw_back_.Axis = pump_halt_.Axis = sync_.SlaveAxis = pump_;
-        prime_.Distance = primed_ ? 0 : drawn_back;
-        draw_back_.Distance = -drawn_back;
-        prime_.Velocity = draw_back_.Velocity = 180;
+        go_.prime.Axis = go_.draw_back.Axis = go_.pump_halt.Axis = go_.sync.SlaveAxis = pump_;
+        go_.prime.Distance = primed_ ? 0 : drawn_back;
+        go_.draw_back.Distance = -drawn_back;
+        go_.prime.Velocity = go_.draw_back.Velocity = 180;
         // deg of the pump for each mm of the path, as two whole numbers.
-        sync_.RatioNumerator = static_cast<std::int16_t>(std::lround(1000 * ctx.get(bead_) * degrees_per_mm3));
-        sync_.RatioDenominator = 1000;
+        go_.sync.RatioNumerator = static_cast<std::int16_t>(std::lround(1000 * ctx.get(bead_) * degrees_per_mm3));
+        go_.sync.RatioDenominator = 1000;
     }
 
     void enter(Step step) {
@@ -222,35 +226,35 @@ private:
         if (!fresh_ && ready) begun_ = true;
         fresh_ = false;
         // Behind a break the pump has to leave the path at once: it would go on turning against a shut valve.
-        pump_halt_.Execute = step_ == Step::raise && pump_power_.Status;
-        pump_halt_(ctx);
-        raise_.Execute = begun_ && step_ == Step::raise;
-        square_.Execute = begun_ && step_ == Step::square;
-        over_.Execute = down_.Execute = begun_ && step_ == Step::approach;
-        prime_.Execute = begun_ && step_ == Step::prime;
-        // It stays coupled until the pump gets a command of its own, which is draw_back_.
-        sync_.Execute = (begun_ && step_ == Step::couple) || step_ == Step::bead;
+        go_.pump_halt.Execute = step_ == Step::raise && up_.pump_power.Status;
+        go_.pump_halt(ctx);
+        go_.raise.Execute = begun_ && step_ == Step::raise;
+        go_.square.Execute = begun_ && step_ == Step::square;
+        go_.over.Execute = go_.down.Execute = begun_ && step_ == Step::approach;
+        go_.prime.Execute = begun_ && step_ == Step::prime;
+        // It stays coupled until the pump gets a command of its own, which is go_.draw_back.
+        go_.sync.Execute = (begun_ && step_ == Step::couple) || step_ == Step::bead;
         // All of them in one scan: seven moves are one path, and the nozzle does not wait for the program in any corner.
-        along_bottom_.Execute = right_arc_.Execute = up_right_.Execute = along_top_.Execute = down_left_.Execute = left_arc_.Execute =
-            to_end_.Execute = begun_ && step_ == Step::bead;
-        draw_back_.Execute = begun_ && step_ == Step::draw_back;
-        leave_.Execute = begun_ && step_ == Step::leave;
+        go_.along_bottom.Execute = go_.right_arc.Execute = go_.up_right.Execute = go_.along_top.Execute = go_.down_left.Execute =
+            go_.left_arc.Execute = go_.to_end.Execute = begun_ && step_ == Step::bead;
+        go_.draw_back.Execute = begun_ && step_ == Step::draw_back;
+        go_.leave.Execute = begun_ && step_ == Step::leave;
 
-        raise_(ctx);
-        square_(ctx);
-        over_(ctx);
-        down_(ctx);
-        prime_(ctx);
-        sync_(ctx);
-        along_bottom_(ctx);
-        right_arc_(ctx);
-        up_right_(ctx);
-        along_top_(ctx);
-        down_left_(ctx);
-        left_arc_(ctx);
-        to_end_(ctx);
-        draw_back_(ctx);
-        leave_(ctx);
+        go_.raise(ctx);
+        go_.square(ctx);
+        go_.over(ctx);
+        go_.down(ctx);
+        go_.prime(ctx);
+        go_.sync(ctx);
+        go_.along_bottom(ctx);
+        go_.right_arc(ctx);
+        go_.up_right(ctx);
+        go_.along_top(ctx);
+        go_.down_left(ctx);
+        go_.left_arc(ctx);
+        go_.to_end(ctx);
+        go_.draw_back(ctx);
+        go_.leave(ctx);
         next(ctx);
     }
 
@@ -263,13 +267,13 @@ private:
             const auto one = [&](const auto& b) {
                 if (over || !(b.Error || b.CommandAborted)) return;
                 over = true;
-                error_ = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
+                count_.error = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
             };
             (one(block), ...);
         };
-        look(raise_, square_, over_, down_, prime_, along_bottom_, right_arc_, up_right_, along_top_, down_left_, left_arc_, to_end_,
-             draw_back_, leave_);
-        if (step_ == Step::couple || step_ == Step::bead) look(sync_);
+        look(go_.raise, go_.square, go_.over, go_.down, go_.prime, go_.along_bottom, go_.right_arc, go_.up_right, go_.along_top,
+             go_.down_left, go_.left_arc, go_.to_end, go_.draw_back, go_.leave);
+        if (step_ == Step::couple || step_ == Step::bead) look(go_.sync);
         return over;
     }
 
@@ -279,50 +283,50 @@ private:
         exchange_(ctx);
         if (begun_ && broken()) {
             open_ = false;
-            if (step_ == Step::bead) ++spoiled_;
+            if (step_ == Step::bead) ++count_.spoiled;
             works_ = false;
             stopped_ = true;
             return enter(Step::raise);
         }
-        if (step_ == Step::bead) pumped_ = (ctx.view(pump_)->actual_position - pump_began_) / degrees_per_mm3;
+        if (step_ == Step::bead) count_.pumped = (ctx.view(pump_)->actual_position - count_.pump_began) / degrees_per_mm3;
         switch (step_) {
             case Step::raise:
-                if (raise_.Done) enter(Step::square);
+                if (go_.raise.Done) enter(Step::square);
                 break;
             case Step::square:
-                if (square_.Done) enter(Step::wait);
+                if (go_.square.Done) enter(Step::wait);
                 break;
             case Step::wait:
                 if (exchange_.Q) enter(Step::approach);
                 break;
             case Step::approach:
-                if (down_.Done) enter(Step::prime);
+                if (go_.down.Done) enter(Step::prime);
                 break;
             case Step::prime:
-                if (!prime_.Done) break;
+                if (!go_.prime.Done) break;
                 primed_ = true;
                 enter(Step::couple);
                 break;
             case Step::couple:
                 // The path stands: the pump has nothing to catch up with, and nothing of the bead is lost.
-                if (!sync_.InSync) break;
-                pump_began_ = ctx.view(pump_)->actual_position;
+                if (!go_.sync.InSync) break;
+                count_.pump_began = ctx.view(pump_)->actual_position;
                 enter(Step::bead);
                 break;
             case Step::bead:
-                open_ = along_bottom_.Active || open_;
-                if (!to_end_.Done) break;
+                open_ = go_.along_bottom.Active || open_;
+                if (!go_.to_end.Done) break;
                 open_ = false;
-                ++covers_;
+                ++count_.covers;
                 enter(Step::draw_back);
                 break;
             case Step::draw_back:
-                if (!draw_back_.Done) break;
+                if (!go_.draw_back.Done) break;
                 primed_ = false;
                 enter(Step::leave);
                 break;
             case Step::leave:
-                if (leave_.Done) enter(Step::wait);
+                if (go_.leave.Done) enter(Step::wait);
                 break;
         }
     }

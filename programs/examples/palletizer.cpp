@@ -57,21 +57,24 @@ class Palletizer final : public Program {
     Output<bool> grip_, pallet_full_;
     Parameter pallet_x_, pallet_y_, pallet_turned_, speed_;
 
-    MC_GroupPower power_;
-    std::array<MC_Home, joints> homes_;
-    MC_GroupEnable enable_;
-    MC_GroupReadStatus status_;
-    MC_GroupReadPosition place_;
-    // A round, in its order.
-    MC_MoveDirectRelative raise_;
-    MC_GroupSelectTool tool_;
-    MC_SetCoordinateTransform pallet_;
-    MC_MoveDirectAbsolute over_chute_;
-    MC_MoveLinearAbsolute onto_box_, off_chute_;
-    MC_GroupWaitTime gripping_;
-    MC_MoveDirectAbsolute over_pallet_;
-    MC_MoveLinearAbsolute beside_, down_, off_pallet_;
-    MC_GroupWaitTime letting_go_;
+    struct {  // power and reference
+        MC_GroupPower power;
+        std::array<MC_Home, joints> homes;
+        MC_GroupEnable enable;
+        MC_GroupReadStatus status;
+        MC_GroupReadPosition place;
+    } up_;
+    struct {  // a round, in its order
+        MC_MoveDirectRelative raise;
+        MC_GroupSelectTool tool;
+        MC_SetCoordinateTransform pallet;
+        MC_MoveDirectAbsolute over_chute;
+        MC_MoveLinearAbsolute onto_box, off_chute;
+        MC_GroupWaitTime gripping;
+        MC_MoveDirectAbsolute over_pallet;
+        MC_MoveLinearAbsolute beside, down, off_pallet;
+        MC_GroupWaitTime letting_go;
+    } go_;
     TON exchange_;
     R_TRIG pressed_;
 
@@ -82,7 +85,9 @@ class Palletizer final : public Program {
     bool holds_ = false;    ///< the gripper is closed
     bool carries_ = false;  ///< a box is off the chute and not on the pallet yet
     std::int64_t box_ = 0;  ///< the next one of this pallet
-    std::int64_t stacked_ = 0, pallets_ = 0, error_ = 0;
+    struct {                // for people
+        std::int64_t stacked = 0, pallets = 0, error = 0;
+    } count_;
 
 public:
     void declare(Declaration& d) override {
@@ -103,11 +108,11 @@ public:
                              {.value = 90, .minimum = 1, .maximum = 100, .unit = "%", .doc = "of the joints, between chute and pallet"});
         d.operator_switch("works", works_, {.doc = "boxes are stacked; a stop and an error switch it off"});
         d.monitor("box", box_, "", "the next one on this pallet");
-        d.monitor("stacked", stacked_, "", "since start");
-        d.monitor("pallets", pallets_, "", "filled");
-        d.monitor("error", error_, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
-        d.block("over_pallet", over_pallet_);
-        d.block("down", down_);
+        d.monitor("stacked", count_.stacked, "", "since start");
+        d.monitor("pallets", count_.pallets, "", "filled");
+        d.monitor("error", count_.error, "", "ErrorID that broke the last round off (docs/reference/errors.md); 0: it was aborted");
+        d.block("over_pallet", go_.over_pallet);
+        d.block("down", go_.down);
         d.alarm(0, Reaction::warn, "The arm was stopped on its way and waits for a person", "机械臂中途停止，等待人工操作",
                 "remove the cause (alarms of its axes and of the bus name it), look that nobody is in its reach, reset, then press `go_on` "
                 "(or switch `works` on): it goes up first, and lays down what it holds where it was meant to go");
@@ -119,20 +124,20 @@ public:
         stopped_ = false;
         works_ = true;
         enter(Step::raise);
-        for (auto& home : homes_) home.Execute = false;
-        enable_.Execute = false;
+        for (auto& home : up_.homes) home.Execute = false;
+        up_.enable.Execute = false;
     }
 
     void scan(TaskContext& ctx) {
-        for (auto* group :
-             {&power_.AxesGroup, &enable_.AxesGroup, &status_.AxesGroup, &place_.AxesGroup, &raise_.AxesGroup, &tool_.AxesGroup,
-              &pallet_.AxesGroup, &over_chute_.AxesGroup, &onto_box_.AxesGroup, &off_chute_.AxesGroup, &gripping_.AxesGroup,
-              &over_pallet_.AxesGroup, &beside_.AxesGroup, &down_.AxesGroup, &off_pallet_.AxesGroup, &letting_go_.AxesGroup})
+        for (auto* group : {&up_.power.AxesGroup, &up_.enable.AxesGroup, &up_.status.AxesGroup, &up_.place.AxesGroup, &go_.raise.AxesGroup,
+                            &go_.tool.AxesGroup, &go_.pallet.AxesGroup, &go_.over_chute.AxesGroup, &go_.onto_box.AxesGroup,
+                            &go_.off_chute.AxesGroup, &go_.gripping.AxesGroup, &go_.over_pallet.AxesGroup, &go_.beside.AxesGroup,
+                            &go_.down.AxesGroup, &go_.off_pallet.AxesGroup, &go_.letting_go.AxesGroup})
             *group = arm_;
         const bool ready = power(ctx);
         pressed_.CLK = ctx.get(go_on_);
         pressed_(ctx);
-        if (pressed_.Q && !status_.GroupErrorStop) works_ = true;
+        if (pressed_.Q && !up_.status.GroupErrorStop) works_ = true;
         if (works_) stopped_ = false;
         describe(ctx);
         move(ctx, ready && (works_ || under_way()));
@@ -144,58 +149,59 @@ public:
 private:
     /// All that has to be so before anything moves.
     bool power(TaskContext& ctx) {
-        power_.Enable = status_.Enable = place_.Enable = true;
-        power_(ctx);
+        up_.power.Enable = up_.status.Enable = up_.place.Enable = true;
+        up_.power(ctx);
         bool homed = true;
         for (std::size_t i = 0; i < joints; ++i) {
-            homes_[i].Axis = axes_[i];
-            homes_[i].Execute = power_.Status && !ctx.view(axes_[i])->homed;
-            homes_[i](ctx);
-            homed = homed && ctx.view(axes_[i])->homed && !homes_[i].Busy;
+            up_.homes[i].Axis = axes_[i];
+            up_.homes[i].Execute = up_.power.Status && !ctx.view(axes_[i])->homed;
+            up_.homes[i](ctx);
+            homed = homed && ctx.view(axes_[i])->homed && !up_.homes[i].Busy;
         }
-        enable_.Execute = power_.Status && homed;
-        enable_(ctx);
-        status_(ctx);
-        place_.CoordSystem = mcACS;
-        place_(ctx);
-        return power_.Status && homed && place_.Valid && (status_.GroupStandby || status_.GroupMoving);
+        up_.enable.Execute = up_.power.Status && homed;
+        up_.enable(ctx);
+        up_.status(ctx);
+        up_.place.CoordSystem = mcACS;
+        up_.place(ctx);
+        return up_.power.Status && homed && up_.place.Valid && (up_.status.GroupStandby || up_.status.GroupMoving);
     }
 
     /// Where everything goes. Told in each scan; a command keeps what stood here at its edge.
     void describe(TaskContext& ctx) {
         // The lift alone, whatever is below it.
-        raise_.CoordSystem = mcACS;
-        if (!begun_) raise_.Distance.A.Axes = {0, 0, std::max(-place_.Position.A.Axes[2], 0.0), 0};
-        raise_.Velocity = 200;
-        tool_.ToolNumber = 1;
-        pallet_.CoordSystem = mcPCS;
-        pallet_.CoordTransform = {
+        go_.raise.CoordSystem = mcACS;
+        if (!begun_) go_.raise.Distance.A.Axes = {0, 0, std::max(-up_.place.Position.A.Axes[2], 0.0), 0};
+        go_.raise.Velocity = 200;
+        go_.tool.ToolNumber = 1;
+        go_.pallet.CoordSystem = mcPCS;
+        go_.pallet.CoordTransform = {
             .X = ctx.get(pallet_x_), .Y = ctx.get(pallet_y_), .Z = pallet_height, .RZ = ctx.get(pallet_turned_) * degree};
 
-        for (auto* direct : {&over_chute_, &over_pallet_}) direct->Velocity = 300 * ctx.get(speed_) / 100;  // deg/s: of the joints together
-        over_chute_.CoordSystem = onto_box_.CoordSystem = off_chute_.CoordSystem = mcMCS;
-        over_chute_.Position.C.Tcp = off_chute_.Position.C.Tcp = {.X = chute_x, .Y = chute_y, .Z = chute_top + high};
-        onto_box_.Position.C.Tcp = {.X = chute_x, .Y = chute_y, .Z = chute_top};
-        gripping_.Duration = 150ms;
+        for (auto* direct : {&go_.over_chute, &go_.over_pallet})
+            direct->Velocity = 300 * ctx.get(speed_) / 100;  // deg/s: of the joints together
+        go_.over_chute.CoordSystem = go_.onto_box.CoordSystem = go_.off_chute.CoordSystem = mcMCS;
+        go_.over_chute.Position.C.Tcp = go_.off_chute.Position.C.Tcp = {.X = chute_x, .Y = chute_y, .Z = chute_top + high};
+        go_.onto_box.Position.C.Tcp = {.X = chute_x, .Y = chute_y, .Z = chute_top};
+        go_.gripping.Duration = 150ms;
 
-        over_pallet_.CoordSystem = beside_.CoordSystem = down_.CoordSystem = off_pallet_.CoordSystem = mcPCS;
+        go_.over_pallet.CoordSystem = go_.beside.CoordSystem = go_.down.CoordSystem = go_.off_pallet.CoordSystem = mcPCS;
         auto there = place_of(box_);
-        down_.Position.C.Tcp = there;
-        down_.Position.C.Tcp.Z += 0.5;  // it falls the last half millimetre
+        go_.down.Position.C.Tcp = there;
+        go_.down.Position.C.Tcp.Z += 0.5;  // it falls the last half millimetre
         there.X += aslant, there.Y += aslant;
         there.Z += near_by;
-        beside_.Position.C.Tcp = there;
+        go_.beside.Position.C.Tcp = there;
         there.Z += high - near_by;
-        over_pallet_.Position.C.Tcp = off_pallet_.Position.C.Tcp = there;
-        letting_go_.Duration = 120ms;
+        go_.over_pallet.Position.C.Tcp = go_.off_pallet.Position.C.Tcp = there;
+        go_.letting_go.Duration = 120ms;
 
-        for (auto* move : {&onto_box_, &off_chute_, &beside_, &down_, &off_pallet_}) move->BufferMode = mcBuffered;
-        gripping_.BufferMode = letting_go_.BufferMode = mcBuffered;
+        for (auto* move : {&go_.onto_box, &go_.off_chute, &go_.beside, &go_.down, &go_.off_pallet}) move->BufferMode = mcBuffered;
+        go_.gripping.BufferMode = go_.letting_go.BufferMode = mcBuffered;
         // From the slanting way into the one down there is a corner in the air: on a curve.
-        down_.BufferMode = mcBlendingLow;
-        down_.TransitionMode = mcTMCornerDistance;
-        down_.TransitionParameter.Parameter[0] = 8;
-        onto_box_.Velocity = down_.Velocity = 150;
+        go_.down.BufferMode = mcBlendingLow;
+        go_.down.TransitionMode = mcTMCornerDistance;
+        go_.down.TransitionParameter.Parameter[0] = 8;
+        go_.onto_box.Velocity = go_.down.Velocity = 150;
     }
 
     void enter(Step step) {
@@ -207,25 +213,26 @@ private:
     void move(TaskContext& ctx, bool ready) {
         if (!fresh_ && ready) begun_ = true;
         fresh_ = false;
-        raise_.Execute = begun_ && step_ == Step::raise;
+        go_.raise.Execute = begun_ && step_ == Step::raise;
         // What is accepted from now on has this tool and this frame.
-        tool_.Execute = pallet_.Execute = begun_ && step_ == Step::prepare;
+        go_.tool.Execute = go_.pallet.Execute = begun_ && step_ == Step::prepare;
         // Each of these is a row of commands that the group keeps in its queue.
-        over_chute_.Execute = onto_box_.Execute = gripping_.Execute = off_chute_.Execute = begun_ && step_ == Step::take;
-        over_pallet_.Execute = beside_.Execute = down_.Execute = letting_go_.Execute = off_pallet_.Execute = begun_ && step_ == Step::stack;
+        go_.over_chute.Execute = go_.onto_box.Execute = go_.gripping.Execute = go_.off_chute.Execute = begun_ && step_ == Step::take;
+        go_.over_pallet.Execute = go_.beside.Execute = go_.down.Execute = go_.letting_go.Execute = go_.off_pallet.Execute =
+            begun_ && step_ == Step::stack;
 
-        raise_(ctx);
-        tool_(ctx);
-        pallet_(ctx);
-        over_chute_(ctx);
-        onto_box_(ctx);
-        gripping_(ctx);
-        off_chute_(ctx);
-        over_pallet_(ctx);
-        beside_(ctx);
-        down_(ctx);
-        letting_go_(ctx);
-        off_pallet_(ctx);
+        go_.raise(ctx);
+        go_.tool(ctx);
+        go_.pallet(ctx);
+        go_.over_chute(ctx);
+        go_.onto_box(ctx);
+        go_.gripping(ctx);
+        go_.off_chute(ctx);
+        go_.over_pallet(ctx);
+        go_.beside(ctx);
+        go_.down(ctx);
+        go_.letting_go(ctx);
+        go_.off_pallet(ctx);
         next(ctx);
     }
 
@@ -238,12 +245,13 @@ private:
             const auto one = [&](const auto& b) {
                 if (over || !(b.Error || b.CommandAborted)) return;
                 over = true;
-                error_ = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
+                count_.error = b.Error ? static_cast<std::int64_t>(b.ErrorID) : 0;
             };
             (one(block), ...);
         };
-        look(raise_, pallet_, over_chute_, onto_box_, gripping_, off_chute_, over_pallet_, beside_, down_, letting_go_, off_pallet_);
-        if (tool_.Error) over = true, error_ = static_cast<std::int64_t>(tool_.ErrorID);
+        look(go_.raise, go_.pallet, go_.over_chute, go_.onto_box, go_.gripping, go_.off_chute, go_.over_pallet, go_.beside, go_.down,
+             go_.letting_go, go_.off_pallet);
+        if (go_.tool.Error) over = true, count_.error = static_cast<std::int64_t>(go_.tool.ErrorID);
         return over;
     }
 
@@ -259,29 +267,29 @@ private:
         }
         switch (step_) {
             case Step::raise:
-                if (raise_.Done) enter(Step::prepare);
+                if (go_.raise.Done) enter(Step::prepare);
                 break;
             case Step::prepare:
-                if (tool_.Done && pallet_.Done) enter(carries_ ? Step::stack : Step::wait);
+                if (go_.tool.Done && go_.pallet.Done) enter(carries_ ? Step::stack : Step::wait);
                 break;
             case Step::wait:
                 if (works_ && ctx.get(box_there_)) enter(Step::take);
                 break;
             case Step::take:
-                if (onto_box_.Done) holds_ = true;
-                if (gripping_.Done) carries_ = true;
-                if (off_chute_.Done) enter(Step::stack);
+                if (go_.onto_box.Done) holds_ = true;
+                if (go_.gripping.Done) carries_ = true;
+                if (go_.off_chute.Done) enter(Step::stack);
                 break;
             case Step::stack:
-                if (down_.Done && carries_) {
+                if (go_.down.Done && carries_) {
                     holds_ = carries_ = false;
-                    ++box_, ++stacked_;
+                    ++box_, ++count_.stacked;
                 }
-                if (off_pallet_.Done) enter(box_ < layers * boxes_of_layer ? Step::wait : Step::change_pallet);
+                if (go_.off_pallet.Done) enter(box_ < layers * boxes_of_layer ? Step::wait : Step::change_pallet);
                 break;
             case Step::change_pallet:
                 if (!exchange_.Q) break;
-                ++pallets_;
+                ++count_.pallets;
                 box_ = 0;
                 enter(Step::prepare);  // the next one may stand somewhere else
                 break;
