@@ -106,11 +106,7 @@ TEST(GroupSlaveMachine, AProgramThatEndsTakesTheMotionOfItsSlaveWithIt) {
     EXPECT_EQ(m.axis(0).state, AxisState::Standstill);
     m.expect_no_jump();
 
-    // What comes to the group next is none of that axis'.
-    const double stood = m.axis(2).set_position;
     ASSERT_EQ(m.command(OperatorAction::program_start, 1).answer, Answer::accepted);
-    m.run(20ms);
-    EXPECT_EQ(m.axis(2).set_position, stood);
     ASSERT_TRUE(m.until([&] { return m.axis(2).set_velocity > 45; }, 5s)) << "coupled again by the program that has begun again";
 }
 

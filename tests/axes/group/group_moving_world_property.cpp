@@ -25,7 +25,7 @@ std::vector<std::uint32_t> seeds() {
     return all;
 }
 
-// G-083, G-085 to G-088. Every other world has troubles too: faults and losses of power of members, belt and table.
+// G-083, G-085 .. G-088, G-092. Every other world has troubles too: faults and losses of power of members, belt and table.
 TEST_P(MovingWorlds, NothingSlipsNothingJumpsNothingHangs) {
     std::size_t compared = 0, reached = 0;
     for (const auto seed : seeds()) {

@@ -25,7 +25,7 @@ struct PumpRig : TrackRig {
     [[nodiscard]] const PathSlave& slave() const { return view().slaves[0]; }
 };
 
-// Its coordinates get other numbers while it follows: nothing moves for that, as with any coupled axis (MC_SetPosition, Part 1), and it stays in sync.
+// G-092: its coordinates get other numbers while it follows: nothing moves for that, as with any coupled axis (MC_SetPosition, Part 1), and it stays in sync.
 TEST(GroupSlaves, ANewNumberForTheSlaveMovesNothing) {
     PumpRig rig;
     ASSERT_EQ(rig.couple(2), ErrorId::none);
@@ -47,7 +47,7 @@ TEST(GroupSlaves, ANewNumberForTheSlaveMovesNothing) {
     }
 }
 
-// Interrupted, continued, aborted, slowed down: the slave has gone what the path has, to the last digit.
+// G-092: interrupted, continued, aborted, slowed down: the slave has gone what the path has, to the last digit.
 TEST(GroupSlaves, ItGoesWhatThePathGoesWhateverBecomesOfThat) {
     PumpRig rig;
     ASSERT_EQ(rig.couple(-3, 4), ErrorId::none);
@@ -112,7 +112,7 @@ TEST(GroupSlaves, WhatIsSuperimposedComesOnTop) {
     EXPECT_NEAR(rig.belt_at() - rig.view().path_gone, apart + 3, 1e-9);
 }
 
-// The group does not wait for its slave: where that can do less it is not in sync, keeps its limits (its oracle), and makes the distance up.
+// G-092: the group does not wait for its slave: where that can do less it is not in sync, keeps its limits (its oracle), and makes the distance up.
 TEST(GroupSlaves, AWeakSlaveFallsBehindAndMakesItUp) {
     PumpRig rig(group_axis("pump", {.velocity = 25, .acceleration = 100, .deceleration = 100, .jerk = 1000}));
     ASSERT_EQ(rig.couple(), ErrorId::none);

@@ -35,7 +35,7 @@ struct Picker : TrackRig {
     }
 };
 
-// Power off and on again while the belt stands: it is the same place.
+// G-088: power off and on again while the belt stands: it is the same place.
 TEST(GroupTrackingMasters, ABeltThatIsSwitchedOffAndOnAgain) {
     Picker rig;
     rig.run(100);
@@ -73,7 +73,7 @@ TEST(GroupTrackingMasters, ABeltThatIsPushedByHandAndSwitchedOn) {
     }
 }
 
-// Homing gives the belt's places other numbers, whichever way; by the drive it also moves.
+// G-088: homing gives the belt's places other numbers, whichever way; by the drive it also moves.
 TEST(GroupTrackingMasters, ABeltThatIsHomed) {
     for (const auto kind : {HomingKind::set_here, HomingKind::drive})
         for (const std::int64_t place : {-50, -150, 3000}) {
@@ -101,7 +101,7 @@ AxisConfig counter() {
     return belt;
 }
 
-// Noise of so many u: it is followed, or it is named what cannot be. Of a place that trembles by n the filter makes 0.62 n / T^2 of acceleration at most (the sum of
+// G-086: noise of so many u: it is followed, or it is named what cannot be. Of a place that trembles by n the filter makes 0.62 n / T^2 of acceleration at most (the sum of
 // the second differences of its answer to one wrong place, two cycles ahead). A member has 1000 u/s2, of which the belt takes 200 and joining 250: 0.88e-3 u.
 TEST(GroupTrackingMasters, AnEncoderThatTrembles) {
     for (const double noise : {2e-4, 8e-4, 3e-3, 1e-2, 4e-2}) {
@@ -142,7 +142,7 @@ TEST(GroupTrackingMasters, AnEncoderThatTrembles) {
     }
 }
 
-// Its telegrams stay away, or its place jumps: frame_lost, and at rest without a jump.
+// G-088: its telegrams stay away, or its place jumps: frame_lost, and at rest without a jump.
 TEST(GroupTrackingMasters, AnEncoderThatIsSilentOrJumps) {
     for (const double jump : {0.0, 0.02, 0.1, 0.15, 5.0, 1000.0}) {
         SCOPED_TRACE(jump);

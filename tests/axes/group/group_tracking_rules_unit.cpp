@@ -15,7 +15,7 @@ struct RunningBelt : TrackRig {
     }
 };
 
-// "Done: the path is at its end and the tool is on the object": a command whose path has no length too. The group stands at X = 0; the object is there now.
+// G-083, "Done: the path is at its end and the tool is on the object": a command whose path has no length too. The group stands at X = 0; the object is there now.
 TEST(GroupTrackingRules, ACommandWithoutAWayJoinsTheObjectToo) {
     RunningBelt rig;
     ASSERT_EQ(rig.track({}, {}).error, ErrorId::none);
@@ -56,7 +56,7 @@ TEST(GroupTrackingRules, ARefusedPathLeavesTheGroupInStandby) {
     EXPECT_FALSE(rig.view().track.axis.valid());
 }
 
-// An axis that was a belt and is a member now would carry itself.
+// G-081: an axis that was a belt and is a member now would carry itself.
 TEST(GroupTrackingRules, ABeltThatHasBecomeAMemberIsNone) {
     KinematicsDescription lift{.arm = CartesianAxes{.linear = {true, true, true}}};
     TrackRig rig(3, arm_of(lift));
@@ -116,7 +116,7 @@ TEST(GroupTrackingRules, TheMachinesFrameIsInUseWhileTheGroupGoesWithAnObject) {
     EXPECT_NEAR(rig.point()[1], 5 - 7, 1e-9);
 }
 
-// A command elsewhere lets the object go; one on the same object, given before the frame's way has come to rest, joins it again.
+// G-083: a command elsewhere lets the object go; one on the same object, given before the frame's way has come to rest, joins it again.
 TEST(GroupTrackingRules, WhatIsBeingLetGoIsJoinedAgain) {
     for (const int after : {1, 2, 20, 60, 150, 400}) {
         SCOPED_TRACE(after);
@@ -133,7 +133,7 @@ TEST(GroupTrackingRules, WhatIsBeingLetGoIsJoinedAgain) {
     }
 }
 
-// A table that turns about what the arm cannot turn its tool about is none for it: a SCARA turns about Z alone.
+// G-081: a table that turns about what the arm cannot turn its tool about is none for it: a SCARA turns about Z alone.
 TEST(GroupTrackingRules, ATableThatIsTiltedIsNoneForAnArmThatTurnsAboutZ) {
     const auto arms = every_kind_of_arm();
     for (const auto& arm : arms) {
@@ -151,7 +151,7 @@ TEST(GroupTrackingRules, ATableThatIsTiltedIsNoneForAnArmThatTurnsAboutZ) {
     }
 }
 
-// MC_SetPosition and homing of a belt give its places other numbers; the object does not move.
+// G-082: MC_SetPosition of a belt gives its places other numbers; the object does not move.
 TEST(GroupTrackingRules, ANewNumberForTheBeltMovesNothing) {
     RunningBelt rig;
     ASSERT_EQ(rig.track({}, {10, 5, 0, 0, 0, 0}).error, ErrorId::none);

@@ -68,6 +68,8 @@ public:
         if (::testing::Test::HasFailure()) ADD_FAILURE() << arm_.name << ", in the end: " << said_;
     }
     [[nodiscard]] int done() const { return done_; }
+    /// Scans in which it was on a belt or a table.
+    [[nodiscard]] int tracked() const { return tracked_; }
 
 private:
     GroupRig& rig() { return plc_.rig; }
@@ -233,6 +235,7 @@ private:
 
     void look() {
         const bool leads = rig().groups[0].leads();
+        tracked_ += view().track.in_sync ? 1 : 0;
         const auto& v = view();
         if (v.state == GroupStandby || v.state == GroupDisabled || v.state == GroupHoming) {
             EXPECT_FALSE(leads);
@@ -292,21 +295,23 @@ private:
     std::array<ExecuteLife, std::tuple_size_v<Seldom>> seldom_lives_;
     std::string said_;
     std::uint64_t healed_ = 0;
-    int done_ = 0, idle_ = 0;
+    int done_ = 0, idle_ = 0, tracked_ = 0;
     double pace_ = 0.02;
     bool busy_ = false;
 };
 
 TEST(GroupWalk, EveryBlockAtRandomOnArmsOfSeveralKinds) {
     const auto arms = every_kind_of_arm();
-    int done = 0;
+    int done = 0, tracked = 0;
     for (std::size_t i = 0; i < property_cases(arms.size()) && !HasFailure(); ++i) {
         SCOPED_TRACE(::testing::Message() << "walk " << i << " of " << arms[i % arms.size()].name);
         BlockWalk walk(7700 + i, arms[i % arms.size()]);
         walk.run(6000);
         done += walk.done();
+        tracked += walk.tracked();
     }
     EXPECT_GT(done, 300);
+    EXPECT_GT(tracked, 1000);
 }
 
 }  // namespace
