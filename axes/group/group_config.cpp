@@ -45,10 +45,12 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
         }
         const double most = most_setup_velocity * group.millimetre;
         if (!(group.setup_velocity >= 0 && group.setup_velocity <= most * (1 + 1e-12)))
-            problem("setup_velocity",
-                    fmt::format("setup_velocity is {:g} {}/s, and in set-up mode the tool's point goes 250 mm/s at most (reduced speed, ISO 10218-1)",
-                                group.setup_velocity, group.unit),
-                    fmt::format("give a velocity above 0 and up to {:g} {}/s; without it that holds", most, group.unit));
+            problem(
+                "setup_velocity",
+                fmt::format(
+                    "setup_velocity is {:g} {}/s, and in set-up mode the tool's point goes 250 mm/s at most (reduced speed, ISO 10218-1)",
+                    group.setup_velocity, group.unit),
+                fmt::format("give a velocity above 0 and up to {:g} {}/s; without it that holds", most, group.unit));
         for (const double value : {group.default_dynamics.velocity, group.default_dynamics.acceleration,
                                    group.default_dynamics.deceleration, group.default_dynamics.jerk})
             if (!std::isfinite(value) || value < 0) {

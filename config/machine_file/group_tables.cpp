@@ -213,8 +213,8 @@ void check_setup_velocity(Reader& reader, const Node& node, const GroupEntry& en
     const double velocity = entry.group.setup_velocity;
     if (most.problem != QuantityProblem::none || (velocity > 0 && velocity <= most.value * (1 + 1e-12))) return;
     reader.problem(written->at, "group.setup_velocity",
-                   "`setup_velocity` of group " + entry.group.name + " is " + show_number(velocity) + " " + entry.unit + "/s; in set-up mode the tool's " +
-                       "point goes above 0 and at most 250 mm/s (reduced speed, ISO 10218-1)",
+                   "`setup_velocity` of group " + entry.group.name + " is " + show_number(velocity) + " " + entry.unit +
+                       "/s; in set-up mode the tool's " + "point goes above 0 and at most 250 mm/s (reduced speed, ISO 10218-1)",
                    "write " + show_number(most.value) + " " + entry.unit + "/s or less, or leave it out: then that holds");
 }
 
@@ -243,10 +243,12 @@ Table<GroupEntry> group_table() {
             field_at<G>("deceleration", dynamics(&PathDynamics::deceleration), quantity(Dimension::acceleration, 0), "along the path"),
             field_at<G>("jerk", dynamics(&PathDynamics::jerk), quantity(Dimension::jerk, 0), "along the path"),
         }));
-    f.push_back(with_default(field_at<G>("setup_velocity", [](G & g) -> auto& { return g.group.setup_velocity; }, quantity(Dimension::velocity),
-                                         "of the tool's point in set-up mode, whoever moves it, at most 250 mm/s (reduced speed, ISO 10218-1); so fast a "
-                                         "person jogs it, in manual mode too. No safety function"),
-                             "250 mm/s"));
+    f.push_back(
+        with_default(field_at<G>(
+                         "setup_velocity", [](G & g) -> auto& { return g.group.setup_velocity; }, quantity(Dimension::velocity),
+                         "of the tool's point in set-up mode, whoever moves it, at most 250 mm/s (reduced speed, ISO 10218-1); so fast a "
+                         "person jogs it, in manual mode too. No safety function"),
+                     "250 mm/s"));
     auto arm = section(arm_table());
     const auto read = arm.read;
     arm.read = [read](Reader& reader, const Node& node, ArmEntry& entry) {
