@@ -77,10 +77,10 @@ enum class OperatorAction : std::uint8_t {
     group_reset,     ///< members in ErrorStop are reset, then the group leaves GroupErrorStop
     group_enable,    ///< GroupDisabled -> GroupStandby [no_control while another party has a member]
     group_disable,   ///< comes to rest on the path first [no_control likewise]
-    group_jog,       ///< value = part of the jogging velocities, 0 to 1; 0 stops. `group_jog` says which way; value2 = distance, 0: as far as it
-                     ///< can. flag = the key was pressed: starts. Without it: a heartbeat, each 50 ms, renews the lease, and may say another way
-                     ///< in the same frame [bad_value; no_control; refused_by_axis: group_disabled, invalid_parameter, no_kinematics,
-                     ///< not_powered, ..., state_forbids while it comes to rest for another mode; of a heartbeat what ended the jog, else stale]
+    group_jog,  ///< value = part of the jogging velocities, 0 to 1; 0 stops. `group_jog` says which way; value2 = distance, 0: as far as it
+                ///< can. flag = the key was pressed: starts. Without it: a heartbeat, each 50 ms, renews the lease, and may say another way
+                ///< in the same frame [bad_value; no_control; refused_by_axis: group_disabled, invalid_parameter, no_kinematics,
+                ///< not_powered, ..., state_forbids while it comes to rest for another mode; of a heartbeat what ended the jog, else stale]
 };
 
 [[nodiscard]] constexpr bool is_of_a_group(OperatorAction action) noexcept {

@@ -51,8 +51,10 @@ Result<bool> is_a_group(const JogOptions& options, hmi::Client& client) {
         return false;
     };
     if (names("groups") && !names("axes"))
-        return Error{"usage.direction", options.axis, "it is a group of axes, and no direction says where it is to go",
-                     fmt::format("Give one or more: `taktwerk jog {} x+ --velocity 20%`, `taktwerk jog {} AXIS+ --frame acs --velocity 20%`.", options.axis, options.axis)};
+        return Error{
+            "usage.direction", options.axis, "it is a group of axes, and no direction says where it is to go",
+            fmt::format("Give one or more: `taktwerk jog {} x+ --velocity 20%`, `taktwerk jog {} AXIS+ --frame acs --velocity 20%`.",
+                        options.axis, options.axis)};
     if (options.group.frame != "mcs" || !options.group.distance.empty())
         return Error{"usage.frame", options.axis, "--frame and --distance are of a group, and an axis has one direction alone",
                      "Leave them out, or name a group and a direction."};
@@ -126,12 +128,15 @@ void add_jog(CLI::App& app, Action& action) {
     auto options = std::make_shared<JogOptions>();
     add_remote_options(*sub, options->remote);
     sub->add_option("AXIS", options->axis, "axis, or group of axes with a direction behind it")->required();
-    sub->add_option("DIRECTION", options->group.directions, "of a group, one or more: x+ y- z+ rx+ ry+ rz+; with --frame acs the names of its axes: shoulder+");
-    sub->add_option("--velocity", options->speed,
-                    "of an axis, signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s. Of a group: the part of its jogging velocity, 20%")
+    sub->add_option("DIRECTION", options->group.directions,
+                    "of a group, one or more: x+ y- z+ rx+ ry+ rz+; with --frame acs the names of its axes: shoulder+");
+    sub->add_option(
+           "--velocity", options->speed,
+           "of an axis, signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s. Of a group: the part of its jogging velocity, 20%")
         ->required();
-    sub->add_option("--frame", options->group.frame,
-                    "of a group: mcs (the machine), acs (each axis), tcs (the tool), wcs (the world), pcs, pcs_2 to pcs_8 (a product); default mcs");
+    sub->add_option(
+        "--frame", options->group.frame,
+        "of a group: mcs (the machine), acs (each axis), tcs (the tool), wcs (the world), pcs, pcs_2 to pcs_8 (a product); default mcs");
     sub->add_option("--distance", options->group.distance, "of a group: stop exactly behind it: 10mm, 5deg");
     add_duration(*sub, "--for", options->for_s, "let go after this time; default: at Ctrl-C");
     sub->callback([&action, options] {

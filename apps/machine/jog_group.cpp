@@ -68,12 +68,13 @@ std::string place_of(const Json& group) {
     std::string out;
     if (group.value("tool_known", false)) {
         constexpr const char* components[] = {"X", "Y", "Z", "RX", "RY", "RZ"};
-        for (std::size_t i = 0; i < 6; ++i) out += fmt::format("{}{} {:.3f}", i == 0 ? "" : "  ", components[i], hmi::number_of(group.at("tool_actual")[i]));
+        for (std::size_t i = 0; i < 6; ++i)
+            out += fmt::format("{}{} {:.3f}", i == 0 ? "" : "  ", components[i], hmi::number_of(group.at("tool_actual")[i]));
         return out + fmt::format("  [{}, deg]", group.at("unit").get<std::string>());
     }
     for (const auto& member : group.at("members"))
-        out += fmt::format("{}{} {:.3f} {}", out.empty() ? "" : "  ", member.at("axis").get<std::string>(), hmi::number_of(member.at("actual_position")),
-                           member.at("unit").get<std::string>());
+        out += fmt::format("{}{} {:.3f} {}", out.empty() ? "" : "  ", member.at("axis").get<std::string>(),
+                           hmi::number_of(member.at("actual_position")), member.at("unit").get<std::string>());
     return out;
 }
 
@@ -83,7 +84,8 @@ std::string held_back(const Json& group) {
     if (limiter == "setup_velocity") return "; slower than asked: set-up mode holds the tool's point down (setup_velocity of the group)";
     if (limiter == "override_factor") return "; slower than asked: the override holds it down (`taktwerk group override`)";
     if (limiter == "axis_limit")
-        return fmt::format("; slower than asked: axis {} is at what the mode and its limits leave it", group.at("limiting_axis").get<std::string>());
+        return fmt::format("; slower than asked: axis {} is at what the mode and its limits leave it",
+                           group.at("limiting_axis").get<std::string>());
     return "";
 }
 
@@ -133,7 +135,8 @@ int jog_group(const RemoteOptions& remote, const GroupJogOptions& options, hmi::
         if (!state) return report(remote, state.error());
         const auto group = named(state->at("groups"), options.group);
         if (!group.is_object()) break;
-        if (group.at("state") != "GroupMoving") return report(remote, fmt::format("{}: stands at {}{}", options.group, place_of(group), held));
+        if (group.at("state") != "GroupMoving")
+            return report(remote, fmt::format("{}: stands at {}{}", options.group, place_of(group), held));
         std::this_thread::sleep_for(20ms);
     }
     return report(remote, options.group + ": let go");

@@ -122,8 +122,7 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
     if (command.kind == GroupCommandKind::jog) {
         if (const auto track = refuse_track(command); track != ErrorId::none) return track;
         const auto error = refuse_frame(command, config_.kinematics.get(), members_);
-        return error != ErrorId::none ? error
-                                      : GroupJog::refuse(command, {command.frame, jogging_of(command), members_, equipment_.arm});
+        return error != ErrorId::none ? error : GroupJog::refuse(command, {command.frame, jogging_of(command), members_, equipment_.arm});
     }
     if (goes_a_way(command.kind))
         if (const auto error = refuse_track(command); error != ErrorId::none) return error;

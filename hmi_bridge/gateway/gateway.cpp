@@ -198,7 +198,8 @@ std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request
         holds = holds && mine && alive;
         if (!alive || mine) continue;
         const auto other = clients_.find(found->second.client);
-        const auto which = command.axis < machine_.layout().axes.size() ? std::string("this axis") : "axis " + machine_.layout().axes[axis].name;
+        const auto which =
+            command.axis < machine_.layout().axes.size() ? std::string("this axis") : "axis " + machine_.layout().axes[axis].name;
         return Refusal{
             Answer::no_control,
             {"command.no_control", "",
@@ -262,7 +263,9 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     if (request.kind == CommandKind::group_jog && !lets_go(request) && !refusal) {
         const auto order = read_group_jog(request.group_jog, machine_.layout(), command.index);
         if (order) command.group_jog = *order;
-        else refusal = Refusal{order.error().code == code(Answer::not_possible_now) ? Answer::not_possible_now : Answer::bad_value, order.error()};
+        else
+            refusal =
+                Refusal{order.error().code == code(Answer::not_possible_now) ? Answer::not_possible_now : Answer::bad_value, order.error()};
         command.value2 = request.group_jog.distance;
     }
     if (!refusal) refusal = check_jog(request, command, now);

@@ -172,9 +172,9 @@ private:
     std::deque<CommandReply> replies_;
     DeedLog deeds_;
     Hands hands_;
-    std::map<std::uint16_t, ClientId> told_jogs_;   ///< axes whose jog was told to begin, and of whom
+    std::map<std::uint16_t, ClientId> told_jogs_;        ///< axes whose jog was told to begin, and of whom
     std::map<std::uint16_t, ClientId> told_group_jogs_;  ///< likewise of groups
-    std::deque<runtime::OperatorCommand> endings_;  ///< what ends with clients that are gone; the inbox has not taken it yet
+    std::deque<runtime::OperatorCommand> endings_;       ///< what ends with clients that are gone; the inbox has not taken it yet
     Instant now_{};
 };
 

@@ -99,8 +99,8 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
 /// The client goes: what it has asked for last, and what ends with it.
 void Gateway::note_end(ClientId id, const Client& client) {
     for (const auto& entry : client.entries)
-        if (entry.state == Entry::State::waiting && entry.request.kind != CommandKind::jog && entry.request.kind != CommandKind::group_jog &&
-            entry.request.kind != CommandKind::measure)
+        if (entry.state == Entry::State::waiting && entry.request.kind != CommandKind::jog &&
+            entry.request.kind != CommandKind::group_jog && entry.request.kind != CommandKind::measure)
             deeds_.say(client.name, deed(entry.request) + "; it was gone before the answer", now_);
     for (auto jog = told_jogs_.begin(); jog != told_jogs_.end();) {
         if (jog->second != id) {

@@ -15,17 +15,17 @@ namespace taktwerk::hmi {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, axes::MC_CoordSystem>, 12> frames{{{"acs", axes::mcACS},
-                                                                                   {"mcs", axes::mcMCS},
-                                                                                   {"wcs", axes::mcWCS},
-                                                                                   {"pcs", axes::mcPCS},
-                                                                                   {"tcs", axes::mcTCS},
-                                                                                   {"pcs_2", axes::mcPCS_2},
-                                                                                   {"pcs_3", axes::mcPCS_3},
-                                                                                   {"pcs_4", axes::mcPCS_4},
-                                                                                   {"pcs_5", axes::mcPCS_5},
-                                                                                   {"pcs_6", axes::mcPCS_6},
-                                                                                   {"pcs_7", axes::mcPCS_7},
-                                                                                   {"pcs_8", axes::mcPCS_8}}};
+                                                                                    {"mcs", axes::mcMCS},
+                                                                                    {"wcs", axes::mcWCS},
+                                                                                    {"pcs", axes::mcPCS},
+                                                                                    {"tcs", axes::mcTCS},
+                                                                                    {"pcs_2", axes::mcPCS_2},
+                                                                                    {"pcs_3", axes::mcPCS_3},
+                                                                                    {"pcs_4", axes::mcPCS_4},
+                                                                                    {"pcs_5", axes::mcPCS_5},
+                                                                                    {"pcs_6", axes::mcPCS_6},
+                                                                                    {"pcs_7", axes::mcPCS_7},
+                                                                                    {"pcs_8", axes::mcPCS_8}}};
 constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::size_t longest_word = 64;
 
@@ -34,7 +34,8 @@ Error bad(std::string what, std::string remedy) { return {"command.bad_value", "
 /// A hand's word may be anything: shown short.
 std::string quoted(std::string_view text) { return fmt::format("\"{}\"", text.substr(0, longest_word)); }
 
-std::vector<std::string> slots_of(axes::MC_CoordSystem frame, const runtime::MachineLayout& layout, const runtime::MachineLayout::GroupInfo& group) {
+std::vector<std::string> slots_of(axes::MC_CoordSystem frame, const runtime::MachineLayout& layout,
+                                  const runtime::MachineLayout::GroupInfo& group) {
     if (frame != axes::mcACS) return {components.begin(), components.end()};
     std::vector<std::string> names;
     for (const auto member : group.members) names.push_back(member < layout.axes.size() ? layout.axes[member].name : "");
@@ -70,7 +71,8 @@ Result<runtime::GroupJogOrder> read_group_jog(const GroupJogRequest& request, co
         if ((sign != '+' && sign != '-') || slot == slots.end()) {
             const auto near = nearest_name(name.substr(0, longest_word), slots);
             return bad(fmt::format("{} is no direction of it in {}", quoted(word), request.frame),
-                       near.empty() ? fmt::format("Give one or more of {}, each with + or - behind it: \"{}+\".", fmt::join(slots, ", "), slots.front())
+                       near.empty() ? fmt::format("Give one or more of {}, each with + or - behind it: \"{}+\".", fmt::join(slots, ", "),
+                                                  slots.front())
                                     : fmt::format("Did you mean \"{}{}\"?", near, sign == '-' ? '-' : '+'));
         }
         const auto place = static_cast<std::size_t>(slot - slots.begin());

@@ -60,8 +60,12 @@ std::string layout_json(const runtime::MachineLayout& layout) {
     for (const auto& group : layout.groups) {
         Json members = Json::array();
         for (const auto member : group.members) members.push_back(layout.axes[member].name);
-        groups.push_back(Json{
-            {"name", group.name}, {"unit", group.unit}, {"members", std::move(members)}, {"arm", group.arm}, {"commands", group.commands}, {"setup_velocity", group.setup_velocity}});
+        groups.push_back(Json{{"name", group.name},
+                              {"unit", group.unit},
+                              {"members", std::move(members)},
+                              {"arm", group.arm},
+                              {"commands", group.commands},
+                              {"setup_velocity", group.setup_velocity}});
     }
     out["slaves"] = layout.slaves;
     out["inputs"] = layout.inputs;

@@ -76,7 +76,9 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
 
 bool PageMessage::may_move() const {
     if (rule == nullptr || !rule->moves) return false;
-    const char* key = rule->command == "jog" || rule->command == "group_jog" ? "velocity" : rule->command == "set_value" ? "value" : nullptr;
+    const char* key = rule->command == "jog" || rule->command == "group_jog" ? "velocity"
+                      : rule->command == "set_value"                         ? "value"
+                                                                             : nullptr;
     if (key == nullptr) return true;
     const auto given = request.find(key);
     return given == request.end() || !given->is_number() || given->get<double>() != 0;

@@ -29,7 +29,9 @@ struct PageMessage {
 
     /// A renewal, a press, or (false) a jog let go and everything that moves nothing.
     [[nodiscard]] bool may_move() const;
-    [[nodiscard]] bool is_jog() const { return rule != nullptr && (rule->command == "jog" || rule->command == "group_jog" || rule->command == "measure"); }
+    [[nodiscard]] bool is_jog() const {
+        return rule != nullptr && (rule->command == "jog" || rule->command == "group_jog" || rule->command == "measure");
+    }
     /// A jog, a measurement, or a button by `set_value` with `press`: true, and false with each renewal.
     [[nodiscard]] bool is_held() const;
     [[nodiscard]] bool is_renewal() const;

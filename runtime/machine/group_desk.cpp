@@ -28,7 +28,12 @@ float part(double value, double limit) noexcept {
 }  // namespace
 
 GroupDesk::GroupDesk(MachineBody& body, HandMotion& hands)
-    : body_(body), hands_(hands), hand_(body), seen_(body.axis_groups.size()), held_(body.axis_groups.size()), accelerations_(body.axis_groups.size()) {}
+    : body_(body),
+      hands_(hands),
+      hand_(body),
+      seen_(body.axis_groups.size()),
+      held_(body.axis_groups.size()),
+      accelerations_(body.axis_groups.size()) {}
 
 std::uint64_t GroupDesk::newest_stop(std::size_t group) const noexcept {
     std::uint64_t newest = 0;

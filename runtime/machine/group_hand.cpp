@@ -18,7 +18,8 @@ constexpr std::size_t first_turn = 3;  // of X Y Z RX RY RZ
 
 axes::JointVector direction_of(const GroupJogOrder& order) noexcept {
     axes::JointVector direction{};
-    for (std::size_t i = 0; i < direction.size(); ++i) direction[i] = static_cast<double>(order.plus >> i & 1) - static_cast<double>(order.minus >> i & 1);
+    for (std::size_t i = 0; i < direction.size(); ++i)
+        direction[i] = static_cast<double>(order.plus >> i & 1) - static_cast<double>(order.minus >> i & 1);
     return direction;
 }
 
@@ -143,7 +144,8 @@ void GroupHand::raise_alarms() noexcept {
         held.told = true;
         for (const auto member : body_.axis_groups[group].view().members) {
             if (!member.valid()) continue;
-            body_.raise({axes::id(axes::AxisAlarm::jog_lease_expired), AlarmSource::axis, member.index, to_seconds(lease)}, axes::axis_alarms);
+            body_.raise({axes::id(axes::AxisAlarm::jog_lease_expired), AlarmSource::axis, member.index, to_seconds(lease)},
+                        axes::axis_alarms);
             break;
         }
     }

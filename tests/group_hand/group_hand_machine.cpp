@@ -207,7 +207,8 @@ TEST(GroupHand, WhatIsNoJogIsRefused) {
     refused({"mcs", "x+", -0.5}, "-0.5");
     refused({"mcs", "x+", 1, -3}, "-3 is no distance");
     refused({"mcs", "x+ rz+", 1, 10}, "ways or of turns");
-    EXPECT_EQ(rig.jog({"mcs", "rx+"}).answer, Answer::accepted) << "a SCARA turns its tool, though not about X: the walk ends where it begins";
+    EXPECT_EQ(rig.jog({"mcs", "rx+"}).answer, Answer::accepted)
+        << "a SCARA turns its tool, though not about X: the walk ends where it begins";
     rig.run(500ms);
     EXPECT_TRUE(rig.stands());
 }

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "tests/property_cases.hpp"
 #include "tests/group_hand/hand_rig.hpp"
+#include "tests/property_cases.hpp"
 
 namespace taktwerk::group_hand {
 namespace {
@@ -34,7 +34,8 @@ private:
 
     HandRig::Given order() {
         static constexpr const char* ways[] = {"x+", "x-", "y+", "y-", "z+", "z-", "rz+", "rz-", "x+ y-"};
-        static constexpr const char* axes[] = {"shoulder+", "shoulder-", "elbow+", "elbow-", "lift+", "lift-", "wrist+", "shoulder+ elbow+", "shoulder- elbow-"};
+        static constexpr const char* axes[] = {"shoulder+", "shoulder-", "elbow+",           "elbow-",          "lift+",
+                                               "lift-",     "wrist+",    "shoulder+ elbow+", "shoulder- elbow-"};
         static constexpr const char* frames[] = {"mcs", "tcs", "pcs"};
         HandRig::Given given;
         given.frame = whole(0, 1) == 0 ? "acs" : frames[whole(0, 2)];

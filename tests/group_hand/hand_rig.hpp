@@ -57,10 +57,13 @@ public:
         b = gateway.open(hmi::Source::socket, "panel B", hmi::Rights::commissioning);
         m.each_cycle = [this] { look(); };
         EXPECT_TRUE(m.up());
-        EXPECT_TRUE(m.until([&] { return std::all_of(joints.begin(), joints.end(), [&](const char* joint) { return m.axis(joint).online; }); }, 5s));
+        EXPECT_TRUE(m.until(
+            [&] { return std::all_of(joints.begin(), joints.end(), [&](const char* joint) { return m.axis(joint).online; }); }, 5s));
         const auto powered = order(a, CommandKind::enable, "all");
         EXPECT_TRUE(powered.accepted()) << powered.error.text();
-        EXPECT_TRUE(m.until([&] { return m.axis("wrist").powered && m.axis("shoulder").powered && m.axis("elbow").powered && m.axis("lift").powered; }, 3s));
+        EXPECT_TRUE(m.until(
+            [&] { return m.axis("wrist").powered && m.axis("shoulder").powered && m.axis("elbow").powered && m.axis("lift").powered; },
+            3s));
         for (const auto* joint : joints) {
             EXPECT_TRUE(order(a, CommandKind::home, joint).accepted());
             EXPECT_TRUE(m.until([&] { return m.axis(joint).homed; }, 2s));
@@ -208,10 +211,12 @@ private:
                 EXPECT_LE(std::abs(axis.set_velocity), limits.velocity * (1 + 1e-6)) << joints[i];
                 EXPECT_LE(std::abs(axis.set_acceleration), limits.acceleration * (1 + 1e-6)) << joints[i];
                 EXPECT_LE(std::abs(axis.set_acceleration - before.acceleration), limits.jerk * t * (1 + 1e-3) + 1e-6) << joints[i];
-                EXPECT_LE(std::abs(axis.set_velocity - before.velocity - t * (axis.set_acceleration + before.acceleration) / 2), limits.jerk * t * t / 2 + 1e-9)
+                EXPECT_LE(std::abs(axis.set_velocity - before.velocity - t * (axis.set_acceleration + before.acceleration) / 2),
+                          limits.jerk * t * t / 2 + 1e-9)
                     << joints[i];
                 if (axis.homed && before.homed && axis.powered && before.powered) {  // without power it follows the motor
-                    EXPECT_LE(std::abs(axis.set_position - before.position - t * (axis.set_velocity + before.velocity) / 2), limits.jerk * t * t * t / 4 + 1e-9)
+                    EXPECT_LE(std::abs(axis.set_position - before.position - t * (axis.set_velocity + before.velocity) / 2),
+                              limits.jerk * t * t * t / 4 + 1e-9)
                         << joints[i];
                 }
             }

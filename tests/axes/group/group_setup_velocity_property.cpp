@@ -32,9 +32,11 @@ public:
           kinematics_(arm_of(arm.description)),
           rig_(fast(axes_of(arm)), with_tool(axes_of(arm), kinematics_, setup_velocity)) {
         rig_.enable();
-        for (auto& axis : rig_.axes) EXPECT_EQ(axis.submit({.kind = CommandKind::home, .position = 0}, Owner::program).error, ErrorId::none);
+        for (auto& axis : rig_.axes)
+            EXPECT_EQ(axis.submit({.kind = CommandKind::home, .position = 0}, Owner::program).error, ErrorId::none);
         rig_.run(50);
-        EXPECT_EQ(rig_.give({.kind = GroupCommandKind::write_tool, .number = 1, .tool = {.frame = {60, 0, 90, 0, 0, 0}}}).error, ErrorId::none);
+        EXPECT_EQ(rig_.give({.kind = GroupCommandKind::write_tool, .number = 1, .tool = {.frame = {60, 0, 90, 0, 0, 0}}}).error,
+                  ErrorId::none);
         EXPECT_EQ(rig_.set(SelectTool{1}), ErrorId::none);
         auto hand = jogging_of_arms();
         hand.path.velocity = 2000;  // what a program may say
@@ -138,7 +140,8 @@ private:
         const auto here = kinematics_->forward(first_of(view.set_position), tool_point);
         if (!here.miss.ok()) return;
         double square = 0;
-        for (std::size_t k = 0; k < 3; ++k) square += std::pow((here.pose.position[k] - last_.position[k]) / to_seconds(GroupRig::cycle), 2);
+        for (std::size_t k = 0; k < 3; ++k)
+            square += std::pow((here.pose.position[k] - last_.position[k]) / to_seconds(GroupRig::cycle), 2);
         last_ = here.pose;
         if (!known_) {
             known_ = true;
@@ -149,7 +152,8 @@ private:
             fastest_ = std::max(fastest_, speed);
             return;
         }
-        ASSERT_LE(speed, most_ * (1 + 1e-9)) << arm_.name << " in cycle " << rig_.path.size() << ", doing " << static_cast<int>(view.active_kind);
+        ASSERT_LE(speed, most_ * (1 + 1e-9)) << arm_.name << " in cycle " << rig_.path.size() << ", doing "
+                                             << static_cast<int>(view.active_kind);
         fastest_ = std::max(fastest_, speed);
         EXPECT_EQ(view.tool_limit, most_);
         if (view.limiter != PathLimiter::setup_velocity) return;
