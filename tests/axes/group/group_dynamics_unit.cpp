@@ -49,6 +49,19 @@ TEST(GroupDynamics, FactorsOfAccelerationAndJerkHoldFromTheFirstCycleOn) {
     EXPECT_GT(soft.acceleration, 600) << "its acceleration is as it was: 5000 u/s3 come to 707 u/s2 up to 100 u/s";
 }
 
+// Half from the program and six tenths from the operator are three tenths, each counted once.
+TEST(GroupDynamics, TheOperatorsFactorMultipliesTheProgramsOnce) {
+    GroupRig rig(1);
+    rig.enable();
+    ASSERT_EQ(rig.set(Override{0.5, 1, 1}), ErrorId::none);
+    ASSERT_EQ(rig.groups[0].set_operators_override(0.6), ErrorId::none);
+
+    const auto most = most_until_done(rig, rig.give(line({50}, 100)).id);
+
+    EXPECT_LE(most.velocity, 30 * (1 + 1e-6));
+    EXPECT_GT(most.velocity, 29.5);
+}
+
 // In a cruise: what is left of the way is braked for with the new factor.
 TEST(GroupDynamics, AFactorThatIsLoweredOnTheWayHoldsForTheRestOfIt) {
     GroupRig rig(1);
