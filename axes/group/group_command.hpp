@@ -26,8 +26,8 @@ enum class GroupCommandKind : std::uint8_t {
     direct_relative,
     path,         ///< a stored path, as it was prepared
     driven_path,  ///< the same, as fast as an axis goes (driver); it has no end of its own
-    jog,   ///< target = direction by slot; goes on while it is held (HoldJog), never waits
-    wait,  ///< duration
+    jog,          ///< target = direction by slot; goes on while it is held (HoldJog), never waits
+    wait,         ///< duration
     halt,
     // beside it
     stop,       ///< locks the group while it is held (release_stop)

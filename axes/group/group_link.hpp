@@ -76,7 +76,7 @@ struct RunTrack {
     const std::unique_ptr<RunSection[]> sections;  ///< by part modulo most_sections
     StretchExchange exchange;
     double begin = 0;
-    DrivenPath drive{};  ///< an axis moves along it, and no stretch is offered; written before `ready`
+    DrivenPath drive{};                   ///< an axis moves along it, and no stretch is offered; written before `ready`
     std::atomic<std::uint64_t> ready{0};  ///< life << 32 | number of the run, from 1: a stretch is offered
     std::atomic<std::uint32_t> first{0};  ///< the first command on it
     std::atomic<std::uint32_t> last{0};   ///< the last one so far

@@ -412,8 +412,8 @@ ErrorId AxisGroup::set(const GroupSetting& setting, Owner owner) noexcept {
         error = set_limits(*limits, owner);
     } else if (const auto* wanted = std::get_if<FollowPath>(&setting)) {
         error = state_ == GroupState::GroupDisabled ? ErrorId::group_disabled
-                : driven_by(wanted->slave)            ? ErrorId::coupling_loop
-                                                      : slaves_.take(*wanted, members_, owner);
+                : driven_by(wanted->slave)          ? ErrorId::coupling_loop
+                                                    : slaves_.take(*wanted, members_, owner);
     } else if (const auto* mode = std::get_if<SetDynamicsMode>(&setting)) {
         view_.reference_dynamics.percent = mode->percent;
     } else if (std::holds_alternative<HoldJog>(setting) || std::holds_alternative<WriteJoggingDynamics>(setting)) {

@@ -18,8 +18,8 @@ struct CornerSide {
 
 /// How far from the corner the curve begins and ends.
 struct MixedRequest {
-    double distance = 0;          ///< u of the tool's point; 0: not by it
-    double deviation = 0;         ///< u of it, that the curve's middle may be off; 0: any
+    double distance = 0;            ///< u of the tool's point; 0: not by it
+    double deviation = 0;           ///< u of it, that the curve's middle may be off; 0: any
     double before = 0, behind = 0;  ///< of each path's own length; 0: not by it
 };
 

@@ -25,7 +25,7 @@ struct DrivenPath {
     bool driven = false;
     PathDriver driver{};
     std::uint32_t sections = 0;
-    double length = 0;   ///< u
+    double length = 0;    ///< u
     MotionLimits room{};  ///< what ramps along it may take, wherever they are; the velocity is that of making up
     PathDynamics said{};  ///< what its command says of them; 0: nothing
 };
@@ -52,7 +52,9 @@ public:
     [[nodiscard]] bool brake_instead(ErrorId why, Duration period) noexcept;
 
     [[nodiscard]] bool on() const noexcept { return phase_ != Phase::off; }
-    [[nodiscard]] bool follows() const noexcept { return phase_ == Phase::waiting || phase_ == Phase::following || phase_ == Phase::ending; }
+    [[nodiscard]] bool follows() const noexcept {
+        return phase_ == Phase::waiting || phase_ == Phase::following || phase_ == Phase::ending;
+    }
     /// At rest after stand().
     [[nodiscard]] bool rests() const noexcept { return phase_ == Phase::resting; }
     /// The length since the path's beginning; laps of a periodic path count.

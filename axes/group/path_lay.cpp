@@ -45,7 +45,9 @@ double fastest_in_bend(const WayPoint& w, const MotionLimits& ramp, const MoveSp
     for (std::size_t i = 0; i < space.members; ++i) {
         const double second = std::abs(w.second[i]), third = std::abs(w.third[i]), most = (1 - share_of_ramps) * space.limits[i].jerk;
         if (second <= 1e-12 && third <= 1e-12) continue;
-        const auto takes = [&](double v) { return third * v * v * v + 3 * second * v * std::min(ramp.deceleration, std::sqrt(ramp.jerk * v)); };
+        const auto takes = [&](double v) {
+            return third * v * v * v + 3 * second * v * std::min(ramp.deceleration, std::sqrt(ramp.jerk * v));
+        };
         double low = 0, high = third > 1e-12 ? std::cbrt(most / third) : most / (3 * second * ramp.deceleration) + most;
         for (int k = 0; k < halvings && takes(high) > most; ++k) {
             const double v = (low + high) / 2;
@@ -145,7 +147,9 @@ void GroupPlanner::look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const {
     auto& seen = run.curve.seen;
     const auto& sections = run.curve.path.sections();
     const std::size_t count = sections.size();
-    const auto look = [&](std::size_t i, int k) { return run.curve.place(i, sections[i].begin + sections[i].length * k / looks_on_section); };
+    const auto look = [&](std::size_t i, int k) {
+        return run.curve.place(i, sections[i].begin + sections[i].length * k / looks_on_section);
+    };
     MotionLimits room{unbounded, unbounded, unbounded, unbounded};
     for (std::size_t i = 0; i < count; ++i) {
         MotionLimits here{unbounded, unbounded, unbounded, unbounded};
@@ -160,7 +164,9 @@ void GroupPlanner::look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const {
     }
     // From each end as fast as braking leads to what lies behind; a lap goes on at its other end.
     const double gain = 2 * braking_counted_on * room.deceleration;
-    const auto behind = [&](double fastest, double then, double length) { return std::min(fastest, std::sqrt(then * then + gain * length)); };
+    const auto behind = [&](double fastest, double then, double length) {
+        return std::min(fastest, std::sqrt(then * then + gain * length));
+    };
     double ahead = unbounded, back = unbounded;
     for (int lap = 0; lap < (mode == mcPeriodic ? 2 : 1); ++lap) {
         for (std::size_t i = count; i-- > 0;) {
@@ -172,8 +178,12 @@ void GroupPlanner::look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const {
             back = behind(seen[i].run.fastest, back, sections[i].length);
         }
     }
-    run.track.drive = {.driven = false, .driver = {}, .sections = static_cast<std::uint32_t>(count), .length = run.curve.path.length(),
-                       .room = room, .said = {}};
+    run.track.drive = {.driven = false,
+                       .driver = {},
+                       .sections = static_cast<std::uint32_t>(count),
+                       .length = run.curve.path.length(),
+                       .room = room,
+                       .said = {}};
 }
 
 }  // namespace taktwerk::axes

@@ -18,16 +18,16 @@ using MemberVector = std::array<double, max_path_axes>;
 /// A section of a path as the cycle goes it.
 struct RunSection {
     PathSection section;
-    bool through_arm = false;            ///< its points are poses; else they are the members themselves
-    CarriedTool carried{};               ///< of whose point they are poses
-    Configuration configuration;         ///< which way of the arm holds along it
-    std::uint32_t before = 0;            ///< of a blend: the command that it comes from
-    double corner = 0;                   ///< s at which its command ends, were it not blended
-    double way = 0;                      ///< length of its command's own element
-    double rest = 0;                     ///< what is left of that behind this section, where it is a blend
-    MemberVector to{};                   ///< where its command ends, to the last bit
+    bool through_arm = false;                         ///< its points are poses; else they are the members themselves
+    CarriedTool carried{};                            ///< of whose point they are poses
+    Configuration configuration;                      ///< which way of the arm holds along it
+    std::uint32_t before = 0;                         ///< of a blend: the command that it comes from
+    double corner = 0;                                ///< s at which its command ends, were it not blended
+    double way = 0;                                   ///< length of its command's own element
+    double rest = 0;                                  ///< what is left of that behind this section, where it is a blend
+    MemberVector to{};                                ///< where its command ends, to the last bit
     CornerPassed corner_passed = CornerPassed::none;  ///< in front of its command
-    std::uint32_t line = 0, number = 0;  ///< of a stored path: where in its text
+    std::uint32_t line = 0, number = 0;               ///< of a stored path: where in its text
     // Where an axis drives the path: u/s from which it can still be braked for what comes behind its end, in front of its beginning.
     double fastest_at_end = 0, fastest_at_begin = 0;
     double fastest = 0;  ///< u/s that may be had on it

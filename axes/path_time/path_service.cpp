@@ -15,8 +15,8 @@ constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
 constexpr int most_stops = 12;
 constexpr double furthest_border = 0.25;  // s behind the first one
 /// Pieces are cut anew so long before the cycle comes to long ones: more than a plan takes, with its lead.
-constexpr double cut_before = 1.0;       // s
-constexpr double least_factor = 1e-6;     // what is slower stands
+constexpr double cut_before = 1.0;     // s
+constexpr double least_factor = 1e-6;  // what is slower stands
 
 }  // namespace
 

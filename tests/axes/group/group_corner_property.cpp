@@ -15,7 +15,11 @@ namespace {
 class MixedProgram {
 public:
     MixedProgram(std::uint64_t seed, const JogArm& arm)
-        : random_(seed), arm_(arm_of(arm.description)), rig_(axes_of(arm), GroupRig::all_of(axes_of(arm), arm_)), at_(arm.start), start_(arm.start) {
+        : random_(seed),
+          arm_(arm_of(arm.description)),
+          rig_(axes_of(arm), GroupRig::all_of(axes_of(arm), arm_)),
+          at_(arm.start),
+          start_(arm.start) {
         rig_.enable();
         auto there = line(arm.start, 60);
         there.kind = GroupCommandKind::direct_absolute;

@@ -21,10 +21,10 @@ GroupCommand rounded(GroupCommand command, MC_TransitionMode transition, double 
 }
 
 struct CornerRun {
-    double nearest = 1e9;       ///< to the corner (60, 0)
-    double leaves = 0;          ///< distance of the last set-point on the first line from it
-    double slowest = 1e9;       ///< on the curve
-    double sharpest = 0;        ///< acceleration on it
+    double nearest = 1e9;  ///< to the corner (60, 0)
+    double leaves = 0;     ///< distance of the last set-point on the first line from it
+    double slowest = 1e9;  ///< on the curve
+    double sharpest = 0;   ///< acceleration on it
     std::vector<JointVector> curve;
 };
 /// (0, 0) to (60, 0) to (60, 60), both with these dynamics.
@@ -181,7 +181,8 @@ TEST(GroupCorner, AScaraGoesOverFromItsJointsToALine) {
     description.joints[0].unit = description.joints[1].unit = description.joints[3].unit = of_a_degree;
     const AxisLimits turning{.velocity = 360, .acceleration = 3600, .deceleration = 3600, .jerk = 72000};
     const AxisLimits lifting{.velocity = 200, .acceleration = 2000, .deceleration = 2000, .jerk = 40000};
-    GroupRig rig({group_axis("a1", turning), group_axis("a2", turning), group_axis("z", lifting), group_axis("a4", turning)}, arm_of(description));
+    GroupRig rig({group_axis("a1", turning), group_axis("a2", turning), group_axis("z", lifting), group_axis("a4", turning)},
+                 arm_of(description));
     rig.enable();
     constexpr JointVector begin{-30, 80, 0, 0}, corner{10, 60, 0, 0};
     const auto there = rig.give({.kind = GroupCommandKind::direct_absolute, .target = begin});

@@ -14,7 +14,8 @@ using std::numbers::pi;
 
 /// X, Y, Z and a turn about Z, in degrees.
 struct TurningRig : GroupRig {
-    TurningRig() : GroupRig(named(4), all_of(named(4), arm_of(in_degrees({.arm = CartesianAxes{.turn_about = 2}}, {false, false, false, true})))) {
+    TurningRig()
+        : GroupRig(named(4), all_of(named(4), arm_of(in_degrees({.arm = CartesianAxes{.turn_about = 2}}, {false, false, false, true})))) {
         enable();
     }
     bool done(CommandId id) {
@@ -122,7 +123,8 @@ TEST(GroupTurn, OrientationTurnsTheShortestWayAboutOneAxis) {
         ASSERT_TRUE(rig.until(
             [&] {
                 const HandFrame now = tool_frame_of(rig);
-                const double way = std::sqrt(std::pow(now.o[0] - from.o[0], 2) + std::pow(now.o[1] - from.o[1], 2) + std::pow(now.o[2] - from.o[2], 2));
+                const double way =
+                    std::sqrt(std::pow(now.o[0] - from.o[0], 2) + std::pow(now.o[1] - from.o[1], 2) + std::pow(now.o[2] - from.o[2], 2));
                 const Turn turn = turn_between(from, now);
                 if (way > 1) {  // a cosine near 1 has few digits
                     ++seen;

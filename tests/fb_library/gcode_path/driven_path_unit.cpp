@@ -56,10 +56,11 @@ struct DrivenRig {
     }
     void master_to(double position, double velocity) {
         plc.rig.step([&] {
-            EXPECT_EQ(plc.rig.axes[3]
-                          .submit({.kind = axes::CommandKind::move_absolute, .position = position, .velocity = velocity}, axes::Owner::program)
-                          .error,
-                      ErrorId::none);
+            EXPECT_EQ(
+                plc.rig.axes[3]
+                    .submit({.kind = axes::CommandKind::move_absolute, .position = position, .velocity = velocity}, axes::Owner::program)
+                    .error,
+                ErrorId::none);
         });
     }
     void master_at(double velocity) {
@@ -171,10 +172,12 @@ TEST(DrivenPath, StandsAtItsEndsAndComesBackToTheSamePlaces) {
     rig.plc.run(2);
     EXPECT_NEAR(rig.tool()[0], 30, 1e-9);
     rig.master_to(from - 20, 40);
-    ASSERT_TRUE(rig.plc.until([&] {
+    ASSERT_TRUE(rig.plc.until(
+        [&] {
             EXPECT_GE(rig.tool()[0], 0);
             return rig.master_stands();
-        }, 6000));
+        },
+        6000));
     ASSERT_TRUE(rig.comes_to_rest());
     EXPECT_EQ(rig.tool()[0], 0);
     rig.master_to(from + 5, 40);
@@ -218,10 +221,12 @@ TEST(DrivenPath, AMasterTooFastForABendIsAnErrorAndARampOnThePath) {
     ASSERT_TRUE(rig.plc.until([&] { return rig.state() == GroupState::GroupErrorStop; }, 3000));
     EXPECT_EQ(rig.plc.rig.view().error, static_cast<std::uint16_t>(ErrorId::path_limit));
     EXPECT_GT(rig.speed(), 40) << "it brakes, and does not jump";
-    ASSERT_TRUE(rig.plc.until([&] {
+    ASSERT_TRUE(rig.plc.until(
+        [&] {
             EXPECT_EQ(rig.tool()[1], 0);
             return rig.speed() == 0;
-        }, 2000));
+        },
+        2000));
     EXPECT_GT(rig.tool()[0], 20);
     EXPECT_LT(rig.tool()[0], 40);
     EXPECT_TRUE(rig.sync.Error);
@@ -299,10 +304,13 @@ TEST(DrivenPath, WhateverEndsItComesToRestOnThePath) {
         EXPECT_TRUE(rig.sync.CommandAborted) << static_cast<int>(end);
         EXPECT_FALSE(rig.sync.InSync);
         const double begins = rig.tool()[0];
-        ASSERT_TRUE(rig.plc.until([&] {
-            EXPECT_EQ(rig.tool()[1], 0);
-            return rig.speed() == 0;
-        }, 2000)) << static_cast<int>(end);
+        ASSERT_TRUE(rig.plc.until(
+            [&] {
+                EXPECT_EQ(rig.tool()[1], 0);
+                return rig.speed() == 0;
+            },
+            2000))
+            << static_cast<int>(end);
         EXPECT_LT(rig.tool()[0] - begins, 2.4) << "30 sqrt(30/5000)";
         rig.plc.run(5);
         if (end == End::halt || end == End::program) {
@@ -352,10 +360,12 @@ TEST(DrivenPath, OverrideIsNoneOfIt) {
     ASSERT_EQ(rig.plc.rig.set(axes::Override{.velocity = 0.1}), ErrorId::none);
     const double from = rig.at_master();
     rig.master_to(from + 20, 30);
-    ASSERT_TRUE(rig.plc.until([&] {
+    ASSERT_TRUE(rig.plc.until(
+        [&] {
             EXPECT_TRUE(rig.sync.InSync);
             return rig.master_stands();
-        }, 3000));
+        },
+        3000));
     rig.plc.run(2);
     EXPECT_NEAR(rig.tool()[0], 20, 1e-9);
 }
@@ -368,12 +378,12 @@ TEST(DrivenPath, WhatCannotBeDrivenIsRefusedBeforeItMoves) {
         std::uint32_t line;
         MC_PATH_SYNC_MODE mode = mcNonPeriodic;
     };
-    for (const Bad& bad :
-         {Bad{"G21 G90 G61\nG1 X10 F3000\nG1 Y10\nM2\n", ErrorId::path_stands, 3}, Bad{"G21 G90\nG1 X10 F3000\nG4 P1\nG1 X20\nM2\n", ErrorId::path_stands, 3},
-          Bad{"G21 G90\nG1 X10 F3000\nM8\nG1 X20\nM2\n", ErrorId::path_stands, 3},
-          Bad{"G21 G90 G17 G61\nG1 X10 F3000\nG3 X20 Y10 J10\nM2\n", ErrorId::path_stands, 3},  // its curvature jumps
-          Bad{straight, ErrorId::path_not_closed, 3, mcPeriodic},
-          Bad{"G21 G90 G64 P1\nG1 X40 F3000\nG1 Y40\nG1 X0\nG1 Y0\nM2\n", ErrorId::path_not_closed, 6, mcPeriodic}}) {
+    for (const Bad& bad : {Bad{"G21 G90 G61\nG1 X10 F3000\nG1 Y10\nM2\n", ErrorId::path_stands, 3},
+                           Bad{"G21 G90\nG1 X10 F3000\nG4 P1\nG1 X20\nM2\n", ErrorId::path_stands, 3},
+                           Bad{"G21 G90\nG1 X10 F3000\nM8\nG1 X20\nM2\n", ErrorId::path_stands, 3},
+                           Bad{"G21 G90 G17 G61\nG1 X10 F3000\nG3 X20 Y10 J10\nM2\n", ErrorId::path_stands, 3},  // its curvature jumps
+                           Bad{straight, ErrorId::path_not_closed, 3, mcPeriodic},
+                           Bad{"G21 G90 G64 P1\nG1 X40 F3000\nG1 Y40\nG1 X0\nG1 Y0\nM2\n", ErrorId::path_not_closed, 6, mcPeriodic}}) {
         DrivenRig rig(bad.text);
         rig.sync.Mode = bad.mode;
         EXPECT_EQ(rig.refused(), bad.error) << bad.text;
@@ -449,7 +459,8 @@ TEST(DrivenPath, AMoodyMasterIsFollowedOnThePath) {
     };
     const auto off_path = [&] {
         const auto p = rig.tool();
-        const double off = std::min({off_line(p, {0, 0, 0}, {30, 0, 0}), off_line(p, {30, 0, 0}, {30, 30, 0}), off_line(p, {30, 30, 0}, {60, 30, 0})});
+        const double off =
+            std::min({off_line(p, {0, 0, 0}, {30, 0, 0}), off_line(p, {30, 0, 0}, {30, 30, 0}), off_line(p, {30, 30, 0}, {60, 30, 0})});
         EXPECT_LE(off, 2 + 1e-9) << "no further than 4, half of that for merging";
         const bool at_corner = std::min(distance(p, {30, 0, 0}), distance(p, {30, 30, 0})) < 13;
         if (!at_corner) {
@@ -504,7 +515,8 @@ TEST(DrivenPath, AnAxisThatFollowsTheLengthGoesBackWithIt) {
     const double began = plc.rig.axis(4).set_position, from = plc.rig.axis(3).set_position;
     for (const double to : {30.0, 12.0}) {
         plc.rig.step([&] {
-            (void)plc.rig.axes[3].submit({.kind = axes::CommandKind::move_absolute, .position = from + to, .velocity = 20}, axes::Owner::program);
+            (void)plc.rig.axes[3].submit({.kind = axes::CommandKind::move_absolute, .position = from + to, .velocity = 20},
+                                         axes::Owner::program);
         });
         ASSERT_TRUE(plc.until(
             [&] {
