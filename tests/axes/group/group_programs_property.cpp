@@ -167,10 +167,14 @@ private:
         }
         ++totals_.rounded;
         const double nearest = std::min(along, left),
-                     allowed = std::max(most_off(k, along), k + 1 < moves_.size() ? most_off(k + 1, left) : 0);
+                     allowed = std::max(most_off(k, along, way), k + 1 < moves_.size() ? most_off(k + 1, left, way) : 0);
         ASSERT_LE(place.off, allowed + 1e-9 * size) << "move " << k << ", " << nearest << " from a corner of it";
     }
 
+    /// In front of it a way of the axes meets one of the tool.
+    bool mixed(std::size_t k) const {
+        return (moves_[k].way.kind == Way::Kind::joints) != (moves_[k - 1].way.kind == Way::Kind::joints);
+    }
     /// How far from the corner in front of move k a curve may begin or end, along either: 0 where none is asked for.
     double reach(std::size_t k, double length) const {
         if (k == 0) return 0;
@@ -178,15 +182,18 @@ private:
         const bool curved = command.transition != mcTMNone && command.buffer_mode >= mcBlendingLow;
         if (!curved) return 0;
         const double half = 0.5 * length * (1 + 1e-9);
+        if (mixed(k)) return half;
         // Of the arc that a curve has to be projected on, a little more.
         const bool lines = moves_[k].way.kind != Way::Kind::arc && moves_[k - 1].way.kind != Way::Kind::arc;
         return command.transition == mcTMCornerDistance ? std::min(half, (lines ? 1 + 1e-9 : 1.2) * command.transition_parameter) : half;
     }
     /// How far off its move a curve may be: by its deviation where that is what was asked for between lines; else by no more than its legs.
-    double most_off(std::size_t k, double from_corner) const {
+    double most_off(std::size_t k, double from_corner, const Way& own) const {
         if (k == 0) return 0;
         const auto& command = moves_[k].command;
         if (command.transition == mcTMNone || command.buffer_mode < mcBlendingLow) return 0;
+        // Between a way of the axes and one of the tool lengths do not compare: up to half of each (G-055).
+        if (mixed(k)) return from_corner <= 0.5 * own.length * (1 + 1e-9) ? 0.5 * own.length : 0;
         const bool lines = moves_[k].way.kind != Way::Kind::arc && moves_[k - 1].way.kind != Way::Kind::arc;
         const double legs = std::min(moves_[k].way.length, moves_[k - 1].way.length) / 2;
         if (from_corner > legs * 1.2) return 0;
