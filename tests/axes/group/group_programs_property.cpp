@@ -172,9 +172,7 @@ private:
     }
 
     /// In front of it a way of the axes meets one of the tool.
-    bool mixed(std::size_t k) const {
-        return (moves_[k].way.kind == Way::Kind::joints) != (moves_[k - 1].way.kind == Way::Kind::joints);
-    }
+    bool mixed(std::size_t k) const { return (moves_[k].way.kind == Way::Kind::joints) != (moves_[k - 1].way.kind == Way::Kind::joints); }
     /// How far from the corner in front of move k a curve may begin or end, along either: 0 where none is asked for.
     double reach(std::size_t k, double length) const {
         if (k == 0) return 0;
