@@ -78,7 +78,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
         in.places[count++] = static_cast<std::uint8_t>(i);
     }
     order.members = static_cast<std::uint8_t>(count);
-    order.tool_velocity = in.tool_velocity;
+    order.tool_velocity = in.tool_velocity.to_hold;
     if (!in.link.orders.try_push(order)) return false;
     clear();
     ++in.life;
@@ -86,7 +86,7 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     in.link.at_run.store(GroupLink::both(in.life, 0), std::memory_order_release);
     in.members = count;
     in.limits = order.limits;
-    in.tool_planned = order.tool_velocity;
+    in.tool_velocity.planned = order.tool_velocity;
     in.q = order.from;
     in.wish = order;
     in.told = true;
@@ -94,11 +94,11 @@ bool PathRun::restart(const GroupMembers& members, const Override& factors, cons
     return true;
 }
 
-void PathRun::keep_tool_below(double velocity) noexcept { inside_->tool_velocity = velocity; }
+void PathRun::keep_tool_below(double velocity) noexcept { inside_->tool_velocity.to_hold = velocity; }
 
 bool PathRun::fits(const GroupMembers& members) const noexcept {
     const auto& in = *inside_;
-    if (in.tool_velocity < in.tool_planned) return false;
+    if (in.tool_velocity.to_hold < in.tool_velocity.planned) return false;
     for (std::size_t k = 0; k < in.members; ++k) {
         if (!members.has(in.places[k])) return false;
         const MemberLimits now = limits_of(members.axis(in.places[k])), &then = in.limits[k];
@@ -127,14 +127,14 @@ bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace
 }
 
 std::optional<PathPlace> PathRun::verdict(CommandId id) const noexcept {
-    for (const auto& v : inside_->verdicts)
+    for (const auto& v : inside_->verdicts.said)
         if (v.id == id && v.life == inside_->life && !v.standing) return PathPlace{.error = v.error, .line = v.line};
     return std::nullopt;
 }
 
 std::pair<JogEnd, std::uint8_t> PathRun::jog_end(CommandId id) const noexcept {
     const auto& in = *inside_;
-    for (const auto& v : in.verdicts)
+    for (const auto& v : in.verdicts.said)
         if (v.id == id && v.life == in.life && v.jog_end != JogEnd::none) return {v.jog_end, in.places[v.jog_place]};
     return {};
 }
@@ -210,19 +210,20 @@ bool PathRun::at_end_of_run() const noexcept {
 
 const PathNote* PathRun::note() noexcept {
     auto& in = *inside_;
-    while (!in.noted && in.link.notes.try_pop(in.note)) in.noted = in.note.life == in.life;
-    if (!exists_ || !in.noted) return nullptr;
-    const auto& n = in.note;
+    for (PathNote next; !in.note && in.link.notes.try_pop(next);)
+        if (next.life == in.life) in.note = next;
+    if (!exists_ || !in.note) return nullptr;
+    const auto& n = *in.note;
     if (n.kind != PathNote::Kind::tell) return n.run == in.begun && at_end_of_run() ? &n : nullptr;
     const bool passed = in.begun > n.run + 1 || (in.begun == n.run + 1 && in.player && (in.player->part() >= n.part || at_end_of_run()));
     return passed || (in.begun == n.run && at_end_of_run()) ? &n : nullptr;
 }
 
-void PathRun::drop_note() noexcept { inside_->noted = false; }
+void PathRun::drop_note() noexcept { inside_->note.reset(); }
 
 void PathRun::go_over(CommandId id) noexcept {
     auto& in = *inside_;
-    const bool first = in.noted && in.note.run == in.begun;  // that is in front of it
+    const bool first = in.note && in.note->run == in.begun;  // that is in front of it
     if (!exists_ || stops_ || first || !at_end_of_run()) return;
     const RunTrack& next = in.link.tracks[in.begun % 2];
     const bool ready = next.ready.load(std::memory_order_acquire) == GroupLink::both(in.life, in.begun + 1);
@@ -235,8 +236,8 @@ void PathRun::clear() noexcept {
     in.player.reset();
     in.drive.end();
     in.track = nullptr;
-    in.verdicts = {};
-    in.noted = false;
+    in.verdicts.said = {};
+    in.note.reset();
     s_ = {};
     command_ = 0;
     line_ = number_ = 0;
@@ -270,7 +271,7 @@ void PathRun::advance(Duration period) noexcept {
             stuck_ = v.error;
             stuck_run_ = v.run;
         }
-        in.verdicts[in.next_verdict++ % in.verdicts.size()] = v;
+        in.verdicts.said[in.verdicts.next++ % in.verdicts.said.size()] = v;
     }
     if (!exists_ || !in.goes() || fault_ != ErrorId::none) return;
     if (in.drive.on()) return go_driven(period);

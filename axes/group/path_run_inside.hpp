@@ -43,15 +43,18 @@ struct PathRun::Inside {
     std::uint32_t driven_part = 0;  // of the track, where an axis drives it
     std::array<std::uint8_t, max_path_axes> places{};
     std::array<MemberLimits, max_path_axes> limits{};
-    double tool_velocity = unlimited, tool_planned = unlimited;  // that is to hold; that the runs of this life keep
+    struct {
+        double to_hold = unlimited, planned = unlimited;  // by now; by the runs of this life
+    } tool_velocity;
     std::size_t members = 0;
     MemberVector q{}, velocity{}, acceleration{}, before{};  // before: the acceleration of the cycle before
     double period = 1;
     WayPoint at;
-    PathNote note;
-    bool noted = false;
-    std::array<GroupVerdict, 32> verdicts{};
-    std::size_t next_verdict = 0;
+    std::optional<PathNote> note;
+    struct {
+        std::array<GroupVerdict, 32> said{};
+        std::size_t next = 0;
+    } verdicts;
     std::uint32_t late = 0;
 
     /// It is on a run.
