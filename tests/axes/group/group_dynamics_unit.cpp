@@ -1,4 +1,4 @@
-// How fast a group's way is gone: factors of acceleration and jerk, limits of one direction, the velocity of a corner. G-049, G-059, G-070, G-071.
+// How fast a group's way is gone: factors of acceleration and jerk, limits of one direction, the velocity of a corner.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ Most most_until_done(GroupRig& rig, CommandId id) {
     return most;
 }
 
-// 1000 u/s2 and 10,000 u/s3: a quarter of the one, or half of the other, and the rest as it is.
+// G-070. 1000 u/s2 and 10,000 u/s3: a quarter of the one, or half of the other, and the rest as it is.
 TEST(GroupDynamics, FactorsOfAccelerationAndJerkHoldFromTheFirstCycleOn) {
     GroupRig quarter(1), half(1);
     quarter.enable();
@@ -62,7 +62,7 @@ TEST(GroupDynamics, TheOperatorsFactorMultipliesTheProgramsOnce) {
     EXPECT_GT(most.velocity, 29.5);
 }
 
-// In a cruise: what is left of the way is braked for with the new factor.
+// G-071. In a cruise: what is left of the way is braked for with the new factor.
 TEST(GroupDynamics, AFactorThatIsLoweredOnTheWayHoldsForTheRestOfIt) {
     GroupRig rig(1);
     rig.enable();
@@ -92,7 +92,7 @@ TEST(GroupDynamics, TheSlowerDirectionHoldsForBoth) {
     }
 }
 
-// 60 u/s before a corner and 20 behind it, or the other way round: in the middle of the curve it is the one that BufferMode names. A curve of 10 u about 90
+// G-049, G-059. 60 u/s before a corner and 20 behind it, or the other way round: in the middle of the curve it is the one that BufferMode names. A curve of 10 u about 90
 // degrees could be passed at 80 u/s.
 TEST(GroupDynamics, ACornerIsPassedAtTheVelocityThatItsBufferModeNames) {
     const auto in_the_middle = [](double before, double behind, MC_BufferMode mode) {

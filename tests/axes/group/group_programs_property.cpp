@@ -1,7 +1,7 @@
 // Programs of one to two hundred moves on every kind of arm, disturbed in every way that is allowed: override, holds, commands and plans that come late. Each
 // cycle (1 ms): every member inside its limits, set-points continuous in position, velocity and acceleration (the rig's look()), told with shown (its
 // oracles), and the tool on its way: off the programmed line or arc only where a corner is rounded, by no more than was asked for. And the places that
-// a disturbed program passes are those of an undisturbed one. O-1, O-4; G-025, G-037 to G-041, G-051 to G-071.
+// a disturbed program passes are those of an undisturbed one.
 //
 // TAKTWERK_PROGRAMS_FIRST=<seed> begins there; TAKTWERK_SOAK_FACTOR multiplies how many are run.
 
@@ -190,7 +190,7 @@ private:
         if (k == 0) return 0;
         const auto& command = moves_[k].command;
         if (command.transition == mcTMNone || command.buffer_mode < mcBlendingLow) return 0;
-        // Between a way of the axes and one of the tool lengths do not compare: up to half of each (G-055).
+        // Between a way of the axes and one of the tool lengths do not compare: up to half of each.
         if (mixed(k)) return from_corner <= 0.5 * own.length * (1 + 1e-9) ? 0.5 * own.length : 0;
         const bool lines = moves_[k].way.kind != Way::Kind::arc && moves_[k - 1].way.kind != Way::Kind::arc;
         const double legs = std::min(moves_[k].way.length, moves_[k - 1].way.length) / 2;
@@ -304,6 +304,7 @@ void run_program(std::uint64_t seed, const JogArm& arm, const Arm& kinematics, P
     if (free.run()) compare(free.passed, run.passed, arm.turning.size(), totals);
 }
 
+// G-025, G-040, G-041, G-051, G-052, G-055, G-058, G-071.
 TEST(GroupPrograms, OfEveryLengthOnEveryKindOfArmKeepLimitsAndPath) {
     const auto arms = arms_of_programs();
     std::vector<Arm> kinematics;

@@ -1,4 +1,4 @@
-// How the tool turns on its way, and which way of the arm it keeps. G-042, G-043, G-073.
+// How the tool turns on its way, and which way of the arm it keeps.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ Arm scara_in_degrees() {
     return arm_of(description);
 }
 
-// Which way round half a turn goes is nobody's choice: it is refused. A little less goes the short way, and the tool turns evenly.
+// G-043. Which way round half a turn goes is nobody's choice: it is refused. A little less goes the short way, and the tool turns evenly.
 TEST(GroupTurns, HalfATurnIsRefusedAndALittleLessGoesTheShortWay) {
     GroupRig rig(4, arm_of({.arm = CartesianAxes{.turn_about = 2}}));
     rig.enable();
@@ -71,7 +71,7 @@ TEST(GroupTurns, AFeedOfATurnIsInRadians) {
     EXPECT_GT(fastest, 1.47);
 }
 
-// A line keeps the way in which the arm stands: one that is told to end in another is none. A move of the axes goes there.
+// G-042. A line keeps the way in which the arm stands: one that is told to end in another is none. A move of the axes goes there.
 TEST(GroupTurns, ALineKeepsTheElbowADirectMoveMayChangeIt) {
     GroupRig rig(4, scara_in_degrees());
     rig.enable();
@@ -104,7 +104,7 @@ TEST(GroupTurns, ALineKeepsTheElbowADirectMoveMayChangeIt) {
     EXPECT_NEAR(rig.view().tool_set[1], goal[1], 1e-9 * 300);
 }
 
-// A relative turn is about the axes of its frame, also where the tool stands turned.
+// G-073. A relative turn is about the axes of its frame, also where the tool stands turned.
 TEST(GroupTurns, ARelativeTurnIsInTheDirectionsOfItsFrame) {
     // ABB, product specification IRB 120 (3HAC035960), in mm; axes in degrees.
     KinematicsDescription description{.arm = SixJoints{.geometry = WristArmLengths{.a2 = -70, .c1 = 290, .c2 = 270, .c3 = 302, .c4 = 72}}};
