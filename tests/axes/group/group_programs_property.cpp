@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 
 #include "tests/axes/group/drawn_program.hpp"
 #include "tests/property_cases.hpp"
@@ -167,7 +168,7 @@ private:
         }
         ++totals_.rounded;
         const double nearest = std::min(along, left),
-                     allowed = std::max(most_off(k, along, way), k + 1 < moves_.size() ? most_off(k + 1, left, way) : 0);
+                     allowed = std::max(most_off(k, along), k + 1 < moves_.size() ? most_off(k + 1, left) : 0);
         ASSERT_LE(place.off, allowed + 1e-9 * size) << "move " << k << ", " << nearest << " from a corner of it";
     }
 
@@ -186,12 +187,12 @@ private:
         return command.transition == mcTMCornerDistance ? std::min(half, (lines ? 1 + 1e-9 : 1.2) * command.transition_parameter) : half;
     }
     /// How far off its move a curve may be: by its deviation where that is what was asked for between lines; else by no more than its legs.
-    double most_off(std::size_t k, double from_corner, const Way& own) const {
+    double most_off(std::size_t k, double from_corner) const {
         if (k == 0) return 0;
         const auto& command = moves_[k].command;
         if (command.transition == mcTMNone || command.buffer_mode < mcBlendingLow) return 0;
-        // Between a way of the axes and one of the tool lengths do not compare: up to half of each.
-        if (mixed(k)) return from_corner <= 0.5 * own.length * (1 + 1e-9) ? 0.5 * own.length : 0;
+        // Between a way of the axes and one of the tool lengths do not compare; how far such a curve is off its corner: group_corner_*.cpp.
+        if (mixed(k)) return std::numeric_limits<double>::infinity();
         const bool lines = moves_[k].way.kind != Way::Kind::arc && moves_[k - 1].way.kind != Way::Kind::arc;
         const double legs = std::min(moves_[k].way.length, moves_[k - 1].way.length) / 2;
         if (from_corner > legs * 1.2) return 0;
