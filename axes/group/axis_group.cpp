@@ -408,6 +408,8 @@ void AxisGroup::publish() noexcept {
     view_.path_velocity = led ? along.velocity : 0;
     view_.path_acceleration = led ? along.acceleration : 0;
     view_.limiter = led ? run_.limiter() : PathLimiter::none;
+    // The share of a jog's velocity is what was commanded; it reaches the path as an override does.
+    if (view_.limiter == PathLimiter::override_factor && jogs() && factors().velocity >= 1) view_.limiter = PathLimiter::command;
     view_.limiting_place = run_.narrowest();
     view_.tool_limit = hand_.setup && config_.kinematics ? setup_velocity_of(config_) : 0;
     const bool on_way = begun_ && queue_.has_active() && goes_a_way(queue_.active().command.kind) && run_.exists();

@@ -280,9 +280,11 @@ TEST(GroupJog, SharesOfTheVelocityActAtOnce) {
     rig.held.velocity = 0.5;
     rig.hold_for(300);
     EXPECT_NEAR(rig.axis(0).set_velocity, 10, 0.02);
+    EXPECT_EQ(rig.view().limiter, PathLimiter::command) << "half was asked for: no override holds it down";
     ASSERT_EQ(rig.set(Override{0.5, 1, 1}), ErrorId::none);
     rig.hold_for(300);
     EXPECT_NEAR(rig.axis(0).set_velocity, 5, 0.02);
+    EXPECT_EQ(rig.view().limiter, PathLimiter::override_factor);
     rig.held.velocity = 0;
     rig.hold_for(400);
     EXPECT_EQ(rig.axis(0).set_velocity, 0);
