@@ -36,9 +36,9 @@ constexpr std::array<Documented, trouble_names.size()> table{{
     {none, stop_machine, "that axis stops: `drive_fault`; its program says what it makes of it", "reset, then power or start"},
     {none, stop_machine, "that axis stops: `drive_fault` or `drive_power_lost`", "reset once the mains are there"},
     {none, stop_machine,
-     "that axis stops: `following_error`, or its drive's own supervision: `drive_fault`; at rest: goes on. A motor without an encoder has "
-     "lost steps, "
-     "and nobody knows",
+     "that axis stops: `following_error`, or its drive's own supervision: `drive_fault`; let go in a motion of the drive's own, where it "
+     "makes "
+     "up what it was held behind: `drive_too_fast`; at rest: goes on. A motor without an encoder has lost steps, and nobody knows",
      "reset, then power or start"},
     {none, stop_machine, "that axis stops: `axis_feedback_lost`, and its watchdog output falls; from 5 s on: `drive_silent`",
      "by itself, then reset"},
