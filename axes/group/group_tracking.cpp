@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "axes/group/group_equipment.hpp"
+#include "axes/group/leading_axis.hpp"
 #include "axes/group/member_limits.hpp"
 #include "axes/group/tool_motion.hpp"
 #include "axes/group/way_point.hpp"
@@ -109,21 +110,6 @@ bool turns_with(const Kinematics& arm, const Conveyance& frame) noexcept {
     return true;
 }
 
-MasterTrack::Reading reading_of(const Axis& axis) noexcept { return axis.as_master(axis.config().encoder ? mcActualValue : mcSetValue); }
-
-/// Where it will be one period on, when the set-points of this cycle act. A set-point goes on with its acceleration; what is measured has been
-/// filtered, and is as old as its latch.
-std::optional<EndlessMotion> next_of(MasterTrack& track, const Axis& axis, Instant now, double period) noexcept {
-    auto reading = reading_of(axis);
-    if (!reading.planned) reading.age = std::max(0.0, to_seconds(now - reading.taken)) + period;
-    if (!track.next(reading, period)) return std::nullopt;
-    auto motion = track.motion();
-    if (!reading.planned) return motion;
-    motion.place.local += period * (motion.velocity + period * motion.acceleration / 2);
-    motion.velocity += period * motion.acceleration;
-    return motion;
-}
-
 }  // namespace
 
 ErrorId GroupTracking::take(FrameTrack& track, const GroupFrames& frames, const GroupMembers& members) noexcept {
@@ -133,7 +119,7 @@ ErrorId GroupTracking::take(FrameTrack& track, const GroupFrames& frames, const 
     if (track.kind == FrameTrack::Kind::table && !(turn_of(axes_[track.master.index]) > 0)) return ErrorId::not_supported;
     if (!turns_with(*inside_->arm, conveyance_of(track, pose_of_numbers(frames.machine), turn_of(axes_[track.master.index]))))
         return ErrorId::not_supported;
-    const auto reading = reading_of(axes_[track.master.index]);
+    const auto reading = leading_reading(axes_[track.master.index]);
     if (!reading.usable) return ErrorId::frame_lost;
     track.reference = reading.motion.place;
     track.serial = ++serials_;
@@ -149,22 +135,22 @@ void GroupTracking::watch(GroupFrames& frames, Instant now, Duration period) noe
         if (!track.moves()) continue;
         if (seen.serial != track.serial) seen = {track.serial, {}};
         const Axis& axis = axes_[track.master.index];
-        const double feed = reading_of(axis).feed;
-        if (const auto motion = next_of(seen.master, axis, now, seconds))
+        const double feed = leading_reading(axis).feed;
+        if (const auto motion = next_of_leading(seen.master, axis, now, seconds))
             frames.product[i] = numbers_of(object_at(track, way(track.reference, motion->place, feed), turn_of(axis)));
     }
     if (in.master) in.before = {way(track_.reference, in.master->place, feed_), in.master->velocity, in.master->acceleration};
     in.master.reset();
     if (!follows()) return;
     const Axis& axis = axes_[track_.master.index];
-    in.planned = reading_of(axis).planned;
-    if (axis.view().state != AxisState::ErrorStop) in.master = next_of(master_, axis, now, seconds);
+    in.planned = leading_reading(axis).planned;
+    if (axis.view().state != AxisState::ErrorStop) in.master = next_of_leading(master_, axis, now, seconds);
 }
 
 ErrorId GroupTracking::prepare(const FrameTrack& track, const GroupMembers& members) noexcept {
     auto& in = *inside_;
     const Axis& axis = axes_[track.master.index];
-    const auto reading = reading_of(axis);
+    const auto reading = leading_reading(axis);
     if (!reading.usable || axis.view().state == AxisState::ErrorStop) return ErrorId::frame_lost;
     const auto frame = conveyance_of(track, pose_of_numbers(track.machine), turn_of(axis));
     if (!turns_with(*in.arm, frame)) return ErrorId::not_supported;  // the machine's frame has been turned since
