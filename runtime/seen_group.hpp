@@ -44,11 +44,28 @@ struct SeenGroup {
     };
     Along along;
 
+    /// What stands around it, seen from the world: X Y Z [the group's unit], RX RY RZ [rad]; a product's that moves, where it is now.
+    struct Frames {
+        axes::SixNumbers machine{};
+        std::array<axes::SixNumbers, axes::product_frames> product{};
+        std::array<axes::AxisRef, axes::product_frames> leader{};  ///< with whose way it moves; invalid: it stands
+    };
+    Frames frames;
+
+    /// The frame that moves and that it goes with, also with no command.
+    struct Track {
+        axes::FrameTrack::Kind kind = axes::FrameTrack::Kind::none;
+        axes::AxisRef axis{};
+        bool in_sync = false;
+        double lag = 0;  ///< of the tool's point behind it, in the group's unit
+    };
+    Track track;
+    double path_deviation = 0;  ///< by which the tool's point is not where it should be, while it moves; in the group's unit
+
     axes::JogEnd jog_end = axes::JogEnd::none;  ///< why the last jog could not go on, until something else moves the group
     std::uint8_t jog_end_place = 0;             ///< JogEnd::member_limit: whose
 
     axes::GroupCommandKind active_kind = axes::GroupCommandKind::none;
-    axes::FrameTrack::Kind track = axes::FrameTrack::Kind::none;  ///< it goes with what moves, also with no command
     axes::CommandId active = 0;
     const void* block = nullptr;  ///< never followed
     std::uint8_t queued = 0;

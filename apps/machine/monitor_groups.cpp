@@ -28,6 +28,7 @@ public:
             out.push_back(line("set    " + pose("tool_set") + fmt::format("   {:.1f} {}/s", number("tool_speed"), text("unit"))));
             out.push_back(line("actual " + pose("tool_actual") + fmt::format("   {:.1f} {}/s", number("tool_actual_speed"), text("unit"))));
         }
+        for (const auto& frame : group_.value("frames", Json::array())) out.push_back(line(seen_from(frame)));
         if (const auto doing = what_it_does(); !doing.empty()) out.push_back(line(doing));
         if (const auto limits = limits_used(); !limits.empty()) out.push_back(line(limits));
         put_error(out);
@@ -65,16 +66,33 @@ private:
         return "";
     }
 
-    [[nodiscard]] std::string pose(const char* key) const {
+    [[nodiscard]] std::string pose(const char* key) const { return pose(group_.at(key)); }
+    [[nodiscard]] std::string pose(const Json& place) const {
         std::string out;
         for (std::size_t i = 0; i < components.size(); ++i) {
-            const double value = hmi::number_of(group_.at(key)[i]);
+            const double value = hmi::number_of(place[i]);
             out += fmt::format("{}{} {:.3f}{}", i == 0 ? "" : "  ", components[i], std::abs(value) < 0.0005 ? 0.0 : value,
                                i == 2   ? " " + text("unit")
                                : i == 5 ? " deg"
                                         : "");
         }
         return out;
+    }
+
+    /// The actual place in a frame that is not the machine's.
+    [[nodiscard]] std::string seen_from(const Json& frame) const {
+        const auto axis = frame.at("axis").get<std::string>();
+        return left(frame.at("frame").get<std::string>(), 7) + (tool_known() ? pose(frame.at("tool_actual")) : std::string("not known")) +
+               (axis.empty() ? std::string{} : "   with " + axis);
+    }
+    /// The frame that moves and that it goes with; also with no command.
+    [[nodiscard]] std::string goes_with() const {
+        const auto kind = group_.value("track", std::string("none"));
+        if (kind == "none") return {};
+        return fmt::format("with {} {}, {}", kind, group_.value("track_axis", std::string{}),
+                           group_.value("track_in_sync", false)
+                               ? std::string("in step")
+                               : fmt::format("{:.1f} {} behind", hmi::number_of(group_.value("track_lag", Json(0))), text("unit")));
     }
 
     [[nodiscard]] std::string what_it_does() const {
@@ -86,6 +104,7 @@ private:
             if (const double left = number("remaining_s"); left > 0) out += fmt::format(", {:.1f} s", left);
         }
         if (const int queued = group_.at("queued").get<int>(); queued > 0) out += fmt::format("{}{} wait", out.empty() ? "" : ", ", queued);
+        if (const auto with = goes_with(); !with.empty()) out += (out.empty() ? "" : "   ") + with;
         if (const double factor = number("override") * number("operators_override"); factor < 1)
             out += fmt::format("{}override {:.0f} %", out.empty() ? "" : "   ", 100 * factor);
         return out;

@@ -14,6 +14,18 @@ std::string_view name(JogEnd end) noexcept {
     return names[static_cast<std::size_t>(end)];
 }
 
+std::string_view name(MC_CoordSystem frame) noexcept {
+    constexpr std::array<std::string_view, 13> names{"acs",   "mcs",   "wcs",   "pcs",   "fcs",   "tcs",  "pcs_2",
+                                                     "pcs_3", "pcs_4", "pcs_5", "pcs_6", "pcs_7", "pcs_8"};
+    static_assert(names.size() == mcPCS_8 + 1u);
+    return names[frame];
+}
+
+std::string_view name(FrameTrack::Kind kind) noexcept {
+    constexpr std::array<std::string_view, 3> names{"none", "belt", "table"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
 std::string_view name(GroupCommandKind kind) noexcept {
     constexpr std::array<std::string_view, 22> names{
         "none",

@@ -3,29 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "axes/group/group_words.hpp"
 #include "core/nearest_name.hpp"
 
 namespace taktwerk::hmi {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, axes::MC_CoordSystem>, 12> frames{{{"acs", axes::mcACS},
-                                                                                    {"mcs", axes::mcMCS},
-                                                                                    {"wcs", axes::mcWCS},
-                                                                                    {"pcs", axes::mcPCS},
-                                                                                    {"tcs", axes::mcTCS},
-                                                                                    {"pcs_2", axes::mcPCS_2},
-                                                                                    {"pcs_3", axes::mcPCS_3},
-                                                                                    {"pcs_4", axes::mcPCS_4},
-                                                                                    {"pcs_5", axes::mcPCS_5},
-                                                                                    {"pcs_6", axes::mcPCS_6},
-                                                                                    {"pcs_7", axes::mcPCS_7},
-                                                                                    {"pcs_8", axes::mcPCS_8}}};
+/// In which a person may jog: the flange's is none of them.
+constexpr std::array frames{axes::mcACS,   axes::mcMCS,   axes::mcWCS,   axes::mcPCS,   axes::mcTCS,   axes::mcPCS_2,
+                            axes::mcPCS_3, axes::mcPCS_4, axes::mcPCS_5, axes::mcPCS_6, axes::mcPCS_7, axes::mcPCS_8};
 constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
 constexpr std::size_t longest_word = 64;
 
@@ -49,15 +40,15 @@ Result<runtime::GroupJogOrder> read_group_jog(const GroupJogRequest& request, co
     if (info.members.empty())
         return Error{"command.not_possible_now", "", "it has no axes by the machine file: its program gives it some",
                      "Name its axes in the file (`members`), or jog them one by one."};
-    const auto frame = std::find_if(frames.begin(), frames.end(), [&](const auto& entry) { return entry.first == request.frame; });
+    const auto frame = std::find_if(frames.begin(), frames.end(), [&](auto one) { return name(one) == request.frame; });
     if (frame == frames.end())
         return bad(fmt::format("there is no frame {}", quoted(request.frame)),
                    "Give acs (each axis), mcs (the machine), wcs (the world), pcs or pcs_2 to pcs_8 (a product), or tcs (the tool).");
-    if (frame->second != axes::mcACS && !info.arm)
+    if (*frame != axes::mcACS && !info.arm)
         return bad(fmt::format("it has no arm, so nothing of it can be moved in {}", request.frame), "Jog its axes: frame acs.");
-    const auto slots = slots_of(frame->second, layout, info);
+    const auto slots = slots_of(*frame, layout, info);
     runtime::GroupJogOrder order;
-    order.frame = frame->second;
+    order.frame = *frame;
     bool moves = false, turns = false;
     std::string_view rest = request.direction;
     for (;;) {

@@ -122,7 +122,16 @@ void put_numbers(JsonWriter& json, std::string_view key, const double (&numbers)
 template <class Part>
 void put_list(JsonWriter& json, std::string_view key, const std::vector<Part>& parts);
 
-void put(JsonWriter& json, const whole_group_v1_t& group) {
+void put(JsonWriter& json, const whole_group_frame_v1_t& frame) {
+    json.open('{');
+    json.field("frame", frame.frame);
+    json.field("axis", frame.axis);
+    put_numbers(json, "tool_set", frame.tool_set);
+    put_numbers(json, "tool_actual", frame.tool_actual);
+    json.close('}');
+}
+
+void put(JsonWriter& json, const whole_group_v2_t& group) {
     json.open('{');
     json.field("name", group.name);
     json.field("unit", group.unit);
@@ -144,10 +153,17 @@ void put(JsonWriter& json, const whole_group_v1_t& group) {
     json.field("tool_known", group.tool_known != 0);
     put_numbers(json, "tool_set", group.tool_set);
     put_numbers(json, "tool_actual", group.tool_actual);
+    put_list(json, "frames", group.frames);
     json.field("tool_speed", group.tool_speed);
     json.field("tool_actual_speed", group.tool_actual_speed);
     json.field("path_velocity", group.path_velocity);
     json.field("path_acceleration", group.path_acceleration);
+    json.field("path_deviation", group.path_deviation);
+    json.field("track", group.track);
+    json.field("track_axis", group.track_axis);
+    json.field("track_in_sync", group.track_in_sync != 0);
+    json.field("track_lag", group.track_lag);
+    json.field("tool_limit", group.tool_limit);
     json.field("limiter", group.limiter);
     json.field("limiting_axis", group.limiting_axis);
     json.field("command", group.command);
@@ -362,7 +378,7 @@ std::string alarms_text(const runtime::Snapshot& snapshot, const MachineLink& ma
 
 }  // namespace
 
-std::string state_json(const whole_state_v3_t& s) {
+std::string state_json(const whole_state_v4_t& s) {
     constexpr std::size_t of_an_axis = 2048, of_a_group = 4096, of_a_value = 96, of_the_rest = 8192;
     JsonWriter json(of_the_rest + s.axes.size() * of_an_axis + s.groups.size() * of_a_group +
                     (s.inputs.size() + s.outputs.size() + s.variables.size() + s.parameters.size() + s.slaves.size()) * of_a_value);
@@ -400,7 +416,7 @@ std::string state_json(const whole_state_v3_t& s) {
 }
 
 std::string state_json(const runtime::Snapshot& snapshot, const MachineLink& machine, const NameOfClient& who) {
-    whole_state_v3_t all{};
+    whole_state_v4_t all{};
     fill(all, snapshot, machine, who);
     return state_json(all);
 }

@@ -1,8 +1,13 @@
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <numbers>
 
 #include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
+#include "axes/group/group_equipment.hpp"
 #include "axes/group/group_words.hpp"
+#include "axes/group/written_pose.hpp"
 #include "hmi_bridge/state/lcm_text.hpp"
 #include "hmi_bridge/state/whole_state.hpp"
 #include "runtime/alarms.hpp"
@@ -12,8 +17,10 @@ namespace {
 
 using runtime::SeenGroup;
 
+constexpr double degree = std::numbers::pi / 180;
+
 /// Of a member it is an alarm, of the path the number of an error.
-void fill_error(whole_group_v1_t& out, std::uint16_t error) {
+void fill_error(whole_group_v2_t& out, std::uint16_t error) {
     out.error = error;
     const auto put = [&](std::string_view name, std::string_view text, std::string_view cause, std::string_view remedy) {
         put_text(out.error_name, name);
@@ -29,7 +36,18 @@ void fill_error(whole_group_v1_t& out, std::uint16_t error) {
     else put({}, {}, {}, {});
 }
 
-void fill_members(whole_group_v1_t& out, const SeenGroup& group, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+std::string_view axis_name(axes::AxisRef axis, const runtime::MachineLayout& layout) {
+    return axis.valid() && axis.index < layout.axes.size() ? std::string_view(layout.axes[axis.index].name) : std::string_view{};
+}
+
+/// X Y Z, and turns in degrees, seen from the machine: seen from a frame of it.
+void put_from(const axes::Pose& frame, std::array<double, 6> place, double (&out)[6]) {
+    for (std::size_t i = 3; i < 6; ++i) place[i] *= degree;
+    const auto seen = axes::numbers_of(axes::seen_from(frame, axes::pose_of_numbers(place)));
+    for (std::size_t i = 0; i < 6; ++i) out[i] = i < 3 ? seen[i] : seen[i] / degree;
+}
+
+void fill_members(whole_group_v2_t& out, const SeenGroup& group, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
     out.members.clear();
     for (std::size_t place = 0; place < group.members.size(); ++place) {
         const auto axis = group.members[place].index;
@@ -48,10 +66,34 @@ void fill_members(whole_group_v1_t& out, const SeenGroup& group, const runtime::
     out.member_count = static_cast<std::int32_t>(out.members.size());
 }
 
+/// Those that somebody has set: the others are the machine's, or the world.
+void fill_frames(whole_group_v2_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+    axes::GroupFrames frames;
+    frames.machine = group.frames.machine;
+    frames.product = group.frames.product;
+    out.frames.clear();
+    for (int each = axes::mcWCS; each <= axes::mcPCS_8; ++each) {
+        const auto frame = static_cast<axes::MC_CoordSystem>(each);
+        if (frame != axes::mcWCS && !axes::is_product(frame)) continue;
+        const auto leader = axes::is_product(frame) ? group.frames.leader[axes::product_index(frame)] : axes::AxisRef{};
+        const auto from_machine = frames.seen_from_machine(frame);
+        if (from_machine == axes::Pose{} && !leader.valid()) continue;
+        auto& seen = out.frames.emplace_back();
+        put_text(seen.frame, name(frame));
+        put_text(seen.axis, axis_name(leader, layout));
+        put_from(from_machine, group.tool.set, seen.tool_set);
+        put_from(from_machine, group.tool.actual, seen.tool_actual);
+        if (group.tool.known) continue;
+        std::fill(std::begin(seen.tool_set), std::end(seen.tool_set), 0.0);
+        std::fill(std::begin(seen.tool_actual), std::end(seen.tool_actual), 0.0);
+    }
+    out.frame_count = static_cast<std::int32_t>(out.frames.size());
+}
+
 /// With no command left it may still stand on a belt, which takes it along when it starts.
 std::string_view what_moves(const SeenGroup& group) {
     if (group.active != 0) return name(group.active_kind);
-    switch (group.track) {
+    switch (group.track.kind) {
         case axes::FrameTrack::Kind::belt: return "MC_TrackConveyorBelt";
         case axes::FrameTrack::Kind::table: return "MC_TrackRotaryTable";
         case axes::FrameTrack::Kind::none: break;
@@ -59,7 +101,7 @@ std::string_view what_moves(const SeenGroup& group) {
     return {};
 }
 
-void fill_way(whole_group_v1_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+void fill_way(whole_group_v2_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
     out.tool_known = group.tool.known;
     for (std::size_t i = 0; i < 6; ++i) {
         out.tool_set[i] = group.tool.set[i];
@@ -74,8 +116,13 @@ void fill_way(whole_group_v1_t& out, const SeenGroup& group, const runtime::Mach
     const auto limiting = along.limiter == axes::PathLimiter::axis && along.limiting_place < group.members.size()
                               ? group.members[along.limiting_place]
                               : axes::AxisRef{};
-    put_text(out.limiting_axis, limiting.valid() && limiting.index < layout.axes.size() ? std::string_view(layout.axes[limiting.index].name)
-                                                                                        : std::string_view{});
+    put_text(out.limiting_axis, axis_name(limiting, layout));
+    out.path_deviation = group.path_deviation;
+    put_text(out.track, name(group.track.kind));
+    put_text(out.track_axis, axis_name(group.track.axis, layout));
+    out.track_in_sync = group.track.in_sync;
+    out.track_lag = group.track.lag;
+    out.tool_limit = along.tool_limit;
     put_text(out.command, what_moves(group));
     put_text(out.block, layout.block_at(group.block));
     out.command_id = group.active;
@@ -89,7 +136,7 @@ void fill_way(whole_group_v1_t& out, const SeenGroup& group, const runtime::Mach
 
 }  // namespace
 
-void fill(whole_group_v1_t& out, const runtime::Snapshot& snapshot, const runtime::MachineLayout& layout, std::size_t index) {
+void fill(whole_group_v2_t& out, const runtime::Snapshot& snapshot, const runtime::MachineLayout& layout, std::size_t index) {
     const auto& group = snapshot.groups[index];
     put_text(out.name, layout.groups[index].name);
     put_text(out.unit, layout.groups[index].unit);
@@ -102,6 +149,7 @@ void fill(whole_group_v1_t& out, const runtime::Snapshot& snapshot, const runtim
     out.in_position = group.in_position;
     fill_error(out, group.error);
     fill_members(out, group, snapshot, layout);
+    fill_frames(out, group, layout);
     fill_way(out, group, layout);
 }
 

@@ -103,6 +103,13 @@ void GroupDesk::look() noexcept {
     for (std::size_t i = 0; i < seen_.size(); ++i) look_at(i);
 }
 
+void GroupDesk::look_at_frames(const axes::GroupFrames& frames, SeenGroup& seen) noexcept {
+    seen.frames.machine = frames.machine;
+    seen.frames.product = frames.product;
+    for (std::size_t i = 0; i < axes::product_frames; ++i)
+        seen.frames.leader[i] = frames.tracks[i].moves() ? frames.tracks[i].master : axes::AxisRef{};
+}
+
 void GroupDesk::look_at_use(const axes::GroupView& view, std::size_t place, SeenGroup& seen) noexcept {
     const auto& axis = body_.axes[view.members[place].index];
     const auto limits = axes::path_limits_of(axis);
@@ -156,7 +163,9 @@ void GroupDesk::look_at(std::size_t group) noexcept {
     seen.along.progress = view.progress;
     seen.along.remaining = view.remaining;
     seen.active_kind = view.active_kind;
-    seen.track = view.track.kind;
+    seen.track = {view.track.kind, view.track.axis, view.track.in_sync, view.track.lag};
+    seen.path_deviation = view.path_deviation;
+    look_at_frames(body_.axis_groups[group].equipment().frames, seen);
     seen.active = view.active;
     seen.block = view.block;
     seen.queued = view.queued_count;

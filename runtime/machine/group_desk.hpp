@@ -37,6 +37,7 @@ private:
     Verdict interrupt(std::size_t group) noexcept;
     Verdict go_on(std::size_t group) noexcept;
     void look_at(std::size_t group) noexcept;
+    static void look_at_frames(const axes::GroupFrames& frames, SeenGroup& seen) noexcept;
     void look_at_use(const axes::GroupView& view, std::size_t place, SeenGroup& seen) noexcept;
 
     MachineBody& body_;

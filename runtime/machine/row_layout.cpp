@@ -112,7 +112,7 @@ struct GroupSignal {
     const char* chinese;
     States (*states)() = nullptr;
 };
-constexpr std::uint16_t tool_words = 14, group_words = 6;
+constexpr std::uint16_t tool_words = 14, group_words = 8;
 constexpr GroupSignal tool_signals[] = {
     {"tool_x", Kind::real, "u", real(0), "set position of the tool, X (MCS)", "工具设定位置 X（MCS）"},
     {"tool_y", Kind::real, "u", real(1), "set position of the tool, Y (MCS)", "工具设定位置 Y（MCS）"},
@@ -131,21 +131,26 @@ constexpr GroupSignal tool_signals[] = {
 };
 States group_states() { return states_of(axes::GroupState::GroupErrorStop); }
 States path_limiters() { return states_of(axes::PathLimiter::setup_velocity); }
+States group_tracks() { return states_of(axes::FrameTrack::Kind::table); }
 States group_commands() { return states_of(axes::GroupCommandKind::disable); }
 constexpr GroupSignal group_signals[] = {
-    {"state", Kind::state, "", field(4, 0, 8), "state of the group", "轴组状态", group_states},
+    {"state", Kind::state, "", field(6, 0, 8), "state of the group", "轴组状态", group_states},
     {"path_velocity", Kind::real, "u/s", real(0), "velocity along the path", "路径速度"},
     {"path_acceleration", Kind::real, "u/s2", real(1), "acceleration along the path", "路径加速度"},
     {"distance_to_go", Kind::real, "u", real(2), "path left of the active command", "当前指令剩余路径"},
     {"progress", Kind::real, "%", real(3), "part of the active command's path that is done", "当前指令路径完成比例"},
-    {"limiter", Kind::state, "", field(4, 8, 8), "what limits the velocity along the path", "路径速度限制原因", path_limiters},
-    {"command", Kind::state, "", field(4, 32, 8), "command", "指令", group_commands},
-    {"active", Kind::whole, "", field(5, 0, 32), "number of the command in control", "当前指令编号"},
-    {"error", Kind::whole, "", field(5, 32, 16), "error number", "错误号"},
-    {"queued", Kind::whole, "", field(4, 40, 8), "commands that wait", "排队指令数"},
-    {"interrupted", Kind::bit, "", field(4, 48, 1), "interrupted", "已中断"},
+    {"path_deviation", Kind::real, "u", real(4), "tool off its path", "工具偏离路径"},
+    {"track", Kind::state, "", field(6, 49, 2), "what the frame moves with", "跟踪坐标系", group_tracks},
+    {"track_in_sync", Kind::bit, "", field(6, 51, 1), "in step with the frame", "已同步"},
+    {"track_lag", Kind::real, "u", real(5), "tool behind the frame", "跟踪滞后"},
+    {"limiter", Kind::state, "", field(6, 8, 8), "what limits the velocity along the path", "路径速度限制原因", path_limiters},
+    {"command", Kind::state, "", field(6, 32, 8), "command", "指令", group_commands},
+    {"active", Kind::whole, "", field(7, 0, 32), "number of the command in control", "当前指令编号"},
+    {"error", Kind::whole, "", field(7, 32, 16), "error number", "错误号"},
+    {"queued", Kind::whole, "", field(6, 40, 8), "commands that wait", "排队指令数"},
+    {"interrupted", Kind::bit, "", field(6, 48, 1), "interrupted", "已中断"},
 };
-constexpr std::uint16_t limiting_axis_bit = 16;  ///< of word 4: 0 = none, else the axis' number in the machine + 1
+constexpr std::uint16_t limiting_axis_bit = 16;  ///< of word 6: 0 = none, else the axis' number in the machine + 1
 constexpr double parts_of_a_percent = 100;
 
 std::string unit_of(const GroupSignal& signal, const std::string& group) {
@@ -212,7 +217,7 @@ void RowLayout::add_groups(const MachineLayout& layout) {
         add_all(group_signals);
         States axes{{0, "none"}};
         for (std::size_t i = 0; i < layout.axes.size(); ++i) axes.emplace_back(static_cast<int>(i) + 1, layout.axes[i].name);
-        add("limiting_axis", Kind::state, "", field(4, limiting_axis_bit, 16), "axis whose limit holds the path back", "限制路径速度的轴",
+        add("limiting_axis", Kind::state, "", field(6, limiting_axis_bit, 16), "axis whose limit holds the path back", "限制路径速度的轴",
             std::move(axes));
         words_ += group_words;
         for (const auto member : group.members) {

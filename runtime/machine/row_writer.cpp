@@ -88,6 +88,8 @@ void put_group(Row& row, const SeenGroup& g, const MachineLayout::GroupInfo& inf
     row.put(g.along.acceleration);
     row.put(g.along.to_go);
     row.put(100 * g.along.progress);
+    row.put(g.path_deviation);
+    row.put(g.track.lag);
     const bool by_axis = g.along.limiter == axes::PathLimiter::axis && g.along.limiting_place < g.members.size() &&
                          g.members[g.along.limiting_place].valid();
     row.put(Packed{}
@@ -97,6 +99,8 @@ void put_group(Row& row, const SeenGroup& g, const MachineLayout::GroupInfo& inf
                 .add(g.active_kind, 8)
                 .add(g.queued, 8)
                 .add(g.interrupted, 1)
+                .add(g.track.kind, 2)
+                .add(g.track.in_sync, 1)
                 .word());
     row.put(Packed{}.add(g.active, 32).add(g.error, 16).word());
     for (std::size_t i = 0; i < info.members.size(); ++i) {

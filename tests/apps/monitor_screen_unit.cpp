@@ -183,6 +183,28 @@ TEST(MonitorScreen, AGroupSaysWhatItDoesAndWhoHoldsItBack) {
     EXPECT_THAT(monitor_screen(with_group, layout, {110, 40, false}), Contains(HasSubstr("INTERRUPTED by a person")));
 }
 
+// In step with its belt, and where the tool is on it; an older runtime says nothing of that.
+TEST(MonitorScreen, AGroupThatGoesWithABeltSaysSo) {
+    auto on_belt = state(2, 0);
+    on_belt["groups"] = Json::array({group()});
+    auto& arm = on_belt["groups"][0];
+    arm["frames"] = Json::array(
+        {{{"frame", "wcs"}, {"axis", ""}, {"tool_set", {1, 2, 3, 0, 0, 0}}, {"tool_actual", {1, 2, 3, 0, 0, 0}}},
+         {{"frame", "pcs_2"}, {"axis", "conveyor"}, {"tool_set", {9, 9, 9, 0, 0, 0}}, {"tool_actual", {12.5, -3, 40, 0, 0, 90}}}});
+    arm["track"] = "belt";
+    arm["track_axis"] = "conveyor";
+    arm["track_in_sync"] = false;
+    arm["track_lag"] = 4.26;
+    auto lines = monitor_screen(on_belt, layout, {120, 40, false});
+    EXPECT_THAT(lines, Contains(HasSubstr("pcs_2  X 12.500  Y -3.000  Z 40.000 mm  RX 0.000  RY 0.000  RZ 90.000 deg   with conveyor")));
+    EXPECT_THAT(lines, Contains(AllOf(HasSubstr("wcs    X 1.000"), Not(HasSubstr("with ")))));
+    EXPECT_THAT(lines, Contains(HasSubstr("with belt conveyor, 4.3 mm behind")));
+    arm["track_in_sync"] = true;
+    EXPECT_THAT(monitor_screen(on_belt, layout, {120, 40, false}), Contains(HasSubstr("with belt conveyor, in step")));
+    arm["track"] = "none";
+    EXPECT_THAT(monitor_screen(on_belt, layout, {120, 40, false}), Not(Contains(HasSubstr("with belt"))));
+}
+
 TEST(MonitorScreen, AGroupInErrorSaysWhyAlsoWhereThereIsNoRoom) {
     auto broken = state(12, 0);
     broken["groups"] = Json::array({group()});

@@ -25,6 +25,7 @@
 #include "taktwerk_lcm/whole_state_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v2_t.hpp"
 #include "taktwerk_lcm/whole_state_v3_t.hpp"
+#include "taktwerk_lcm/whole_state_v4_t.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -63,6 +64,9 @@ TEST(LcmTypes, FingerprintsDoNotChange) {
         {"whole_state_v1_t", {whole_state_v1_t::getHash(), 0xf48ecc8775cb588eu}},
         {"whole_state_v2_t", {whole_state_v2_t::getHash(), 0xaa5e1140b31fb16au}},
         {"whole_state_v3_t", {whole_state_v3_t::getHash(), 0xf5a7ee78c2284487u}},
+        {"whole_state_v4_t", {whole_state_v4_t::getHash(), 0xf13b94f6195835a9u}},
+        {"whole_group_v2_t", {whole_group_v2_t::getHash(), 0x8d54fd10c30b7d07u}},
+        {"whole_group_frame_v1_t", {whole_group_frame_v1_t::getHash(), 0xcf690152a10afeaeu}},
         {"whole_statistics_v1_t", {whole_statistics_v1_t::getHash(), 0x5b85a89c093cd5e5u}},
         {"whole_statistics_v2_t", {whole_statistics_v2_t::getHash(), 0x366d4af8a7e70253u}},
         {"whole_task_v1_t", {whole_task_v1_t::getHash(), 0x00bc836482d1411fu}},

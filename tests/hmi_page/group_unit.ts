@@ -5,7 +5,7 @@ import { why_not_own } from '@page/group/hand';
 import { path_text, window_around } from '@page/group/path_view';
 import { Trail } from '@page/group/trail';
 import { Answer, Request } from '@page/link';
-import { held_back, why_error } from '@page/pages/group';
+import { goes_with, held_back, why_error } from '@page/pages/group';
 import { GroupState, MachineState } from '@page/state';
 import { choose_language, say } from '@page/texts';
 
@@ -20,6 +20,14 @@ test('who holds the path back is named', () => {
     assert.equal(held_back(group), say('group_limited_axis', { axis: 'shoulder' }));
     assert.equal(held_back({ ...group, limiter: 'override_factor', limiting_axis: '' }), say('limiter_override_factor'));
     assert.equal(held_back({ ...group, limiter: 'command', limiting_axis: '' }), say('limiter_command'));
+});
+
+test('the frame that it goes with is named, and how well it does', () => {
+    assert.equal(goes_with(group), '', 'an older runtime says nothing');
+    assert.equal(goes_with({ ...group, track: 'none', track_axis: '' }), '');
+    const belt = { ...group, track: 'belt', track_axis: 'conveyor', track_in_sync: false, track_lag: 3.16 };
+    assert.match(goes_with(belt), /conveyor.*3\.2 mm/);
+    assert.doesNotMatch(goes_with({ ...belt, track_in_sync: true }), /3\.2/);
 });
 
 test('an error is said in the reader\'s language, with what to do', () => {

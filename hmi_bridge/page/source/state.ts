@@ -115,6 +115,16 @@ export interface GroupMember {
 /** X Y Z in the group's unit, RX RY RZ in degrees. */
 export type ToolPose = [Real, Real, Real, Real, Real, Real];
 
+/** The tool seen from a frame that is not the machine's. */
+export interface GroupFrame {
+    /** "wcs", "pcs", "pcs_2" ... */
+    frame: string;
+    /** With whose way it moves; empty: it stands. */
+    axis: string;
+    tool_set: ToolPose;
+    tool_actual: ToolPose;
+}
+
 export interface GroupState {
     name: string;
     unit: string;
@@ -136,10 +146,19 @@ export interface GroupState {
     tool_known: boolean;
     tool_set: ToolPose;
     tool_actual: ToolPose;
+    /** Absent from an older runtime, as all of `track` and `path_deviation`. */
+    frames?: GroupFrame[];
     tool_speed: Real;
     tool_actual_speed: Real;
     path_velocity: Real;
     path_acceleration: Real;
+    path_deviation?: Real;
+    /** "belt", "table"; "none". */
+    track?: string;
+    track_axis?: string;
+    track_in_sync?: boolean;
+    track_lag?: Real;
+    tool_limit?: Real;
     limiter: string;
     limiting_axis: string;
     command: string;

@@ -68,6 +68,23 @@ TEST(KnownPoses, ScaraBentToTheLeft) {
     expect_pose(epson_g10(), {90 * degree, -90 * degree, -.1, 30 * degree, 0, 0}, posed(.400, .250, -.1, 30 * degree, 0, 0));
 }
 
+// Counted to the right, from where the elbow is bent by 90 degrees to the left: at 90 the arm is stretched, at 180 it is bent to the right.
+TEST(KnownPoses, AJointThatIsCountedBackwardsFromItsOwnZero) {
+    PublishedArm arm = epson_g10();
+    arm.description.joints[1].sign = -1;
+    arm.description.joints[1].zero = right;
+    expect_pose(arm, {}, posed(.250, .400, 0, right, 0, 0));
+    expect_pose(arm, degrees({0, 90, 0, 0, 0, 0}), posed(.650, 0, 0, 0, 0, 0));
+    expect_pose(arm, degrees({0, 180, 0, 0, 0, 0}), posed(.250, -.400, 0, -right, 0, 0));
+
+    const Kinematics kinematics = made(arm);
+    const Joints near = degrees({10, 170, 0, 0, 0, 0});
+    const AxisSolution back = kinematics.inverse(posed(.250, -.400, 0, -right, 0, 0), {}, kinematics.configuration(near), near);
+    ASSERT_TRUE(back.ok());
+    EXPECT_NEAR(back.axes[0], 0, 1e-12);
+    EXPECT_NEAR(back.axes[1], 180 * degree, 1e-12);
+}
+
 // At 0 as drawn; leaning forward by 90 degrees the upper arm lies level, and the forearm stays level too: its motor keeps its angle to the horizon.
 TEST(KnownPoses, PalletizerKeepsItsFlangeLevel) {
     expect_pose(irb_460(), {}, posed(.260 + 1.025 + .225, 0, .745 + .945 - .2515, 0, 0, 0));

@@ -34,6 +34,7 @@
 #include "taktwerk_lcm/whole_state_v1_t.hpp"
 #include "taktwerk_lcm/whole_state_v2_t.hpp"
 #include "taktwerk_lcm/whole_state_v3_t.hpp"
+#include "taktwerk_lcm/whole_state_v4_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v1_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v2_t.hpp"
 #include "taktwerk_lcm/whole_task_v1_t.hpp"
@@ -106,6 +107,9 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
     expect("whole_group_v1_t", whole_group_v1_t::getHash());
     expect("whole_state_v2_t", whole_state_v2_t::getHash());
     expect("whole_state_v3_t", whole_state_v3_t::getHash());
+    expect("whole_state_v4_t", whole_state_v4_t::getHash());
+    expect("whole_group_v2_t", whole_group_v2_t::getHash());
+    expect("whole_group_frame_v1_t", whole_group_frame_v1_t::getHash());
     expect("whole_statistics_v1_t", whole_statistics_v1_t::getHash());
     expect("whole_statistics_v2_t", whole_statistics_v2_t::getHash());
     expect("whole_task_v1_t", whole_task_v1_t::getHash());

@@ -111,6 +111,63 @@ TEST(GroupSeen, TheToolIsWhereItsJointsAre) {
     EXPECT_LT(group["progress"].get<double>(), 1);
 }
 
+// The delta's tray (config/machines/delta-picker.yaml: pcs_2 at -75, 110, -900 mm, turned by 3 deg) stands; its part (pcs) goes along X with the belt, at
+// 90 mm/s, and so does what is told of it.
+TEST(GroupSeen, TheToolIsToldFromEachFrameThatSomebodySet) {
+    ExampleMachine m{"delta-picker"};
+    hmi::RuntimeLink link{m.machine()};
+    ASSERT_TRUE(m.up());
+    const auto group = [&] { return Json::parse(hmi::state_json(m.snapshot(), link))["groups"][0]; };
+    ASSERT_EQ(group()["frames"].size(), 1u) << "no part is on the belt yet: only the tray is there";
+    const auto frame = [&](const Json& of, const char* name) {
+        for (const auto& one : of["frames"])
+            if (one["frame"] == name) return one;
+        return Json{};
+    };
+    int in_step = 0, behind = 0, compared = 0;
+    double before = 0;
+    bool was_in_step = false;
+    m.each_cycle = [&] {
+        const auto now = group();
+        ASSERT_EQ(now["tool_known"], true);
+        for (const char* of : {"tool_set", "tool_actual"}) {
+            const auto tray = frame(now, "pcs_2");
+            EXPECT_EQ(tray["axis"], "");
+            const double x = now[of][0].get<double>() + 75, y = now[of][1].get<double>() - 110, c = std::cos(3 * degree),
+                         s = std::sin(3 * degree);
+            EXPECT_NEAR(tray[of][0].get<double>(), c * x + s * y, 1e-9);
+            EXPECT_NEAR(tray[of][1].get<double>(), c * y - s * x, 1e-9);
+            EXPECT_NEAR(tray[of][2].get<double>(), now[of][2].get<double>() + 900, 1e-9);
+            EXPECT_NEAR(tray[of][5].get<double>(), now[of][5].get<double>() - 3, 1e-9) << "deg";
+        }
+        const auto part = frame(now, "pcs");
+        if (now["track"] == "none") {
+            EXPECT_EQ(now["track_axis"], "");
+            EXPECT_EQ(now["track_in_sync"], false);
+            was_in_step = false;
+            return;
+        }
+        EXPECT_EQ(now["track"], "belt");
+        EXPECT_EQ(now["track_axis"], "belt");
+        ASSERT_FALSE(part.is_null());
+        EXPECT_EQ(part["axis"], "belt");
+        const double moved = now["tool_set"][0].get<double>() - part["tool_set"][0].get<double>();
+        const bool in_sync = now["track_in_sync"].get<bool>();
+        if (in_sync && was_in_step) {
+            EXPECT_NEAR(moved - before, 0.09, 0.002) << "mm in a cycle, but for what the belt's encoder rounds";
+            EXPECT_NEAR(now["track_lag"].get<double>(), 0, 1e-9);
+            ++compared;
+        }
+        (in_sync ? in_step : behind) += 1;
+        was_in_step = in_sync;
+        before = moved;
+    };
+    m.run(12s);
+    EXPECT_GT(in_step, 200);
+    EXPECT_GT(behind, 50);
+    EXPECT_GT(compared, 200);
+}
+
 // 1 = at the limit, of velocity, acceleration and jerk of each axis; who is named as holding the path back is at its limit.
 TEST(GroupSeen, WhoHoldsThePathBackIsAtItsLimit) {
     Scara s;

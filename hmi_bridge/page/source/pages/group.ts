@@ -7,9 +7,9 @@ import { PathView } from '../group/path_view';
 import { Trail, trail_seconds } from '../group/trail';
 import { duration, fixed } from '../numbers';
 import { said } from '../sentences/said';
-import { GroupState, MachineState, ToolPose, value } from '../state';
-import { say, word } from '../texts';
-import { element, mark, write } from '../view';
+import { GroupFrame, GroupState, MachineState, ToolPose, value } from '../state';
+import { Key, say, word } from '../texts';
+import { element, mark, Rows, write } from '../view';
 
 const trail_each = 150;  // ms
 const components = ['X', 'Y', 'Z', 'RX', 'RY', 'RZ'] as const;
@@ -19,6 +19,13 @@ const tones: Record<string, string> = { GroupDisabled: 'idle', GroupStopping: 'w
 /** Who or what holds the velocity along the path down, in words. */
 export function held_back(group: GroupState): string {
     return group.limiter === 'axis_limit' && group.limiting_axis ? say('group_limited_axis', { axis: group.limiting_axis }) : word('limiter', group.limiter);
+}
+
+/** Which frame that moves it goes with, and how well; empty: none. */
+export function goes_with(group: GroupState): string {
+    if (!group.track || group.track === 'none') return '';
+    const what = say(group.track === 'table' ? 'group_track_table' : 'group_track_belt', { axis: group.track_axis ?? '' });
+    return group.track_in_sync ? say('group_track_in_step', { what }) : say('group_track_behind', { what, lag: `${fixed(group.track_lag ?? 0, 1)} ${group.unit}` });
 }
 
 /** Why it stands in an error and what to do, the nearest first; empty: it does not. */
@@ -34,11 +41,22 @@ function tool_table(unit: string) {
         mark(cells.tool_actual[i] as Element, 'data-value', `tool_actual_${name}`);
         mark(cells.tool_set[i] as Element, 'data-value', `tool_set_${name}`);
     });
+    const body = element('tbody'), of_frames = new Rows(body, (frame: GroupFrame) => frame.frame, (frame) => {
+        const numbers = components.map((name) => element('td', { class: 'number', 'data-value': `${frame.frame}_${name}` })), head = element('th', { scope: 'row' });
+        return { root: element('tr', { 'data-frame': frame.frame }, head, ...numbers), head, numbers };
+    }, (row, frame) => {
+        const name = say(`group_frame_${frame.frame}` as Key);
+        write(row.head, frame.axis ? say('group_frame_moves', { name, axis: frame.axis }) : name);
+        row.numbers.forEach((cell, i) => write(cell, known ? fixed(frame.tool_actual[i]) : '–'));
+    });
+    let known = false;
     const row = (of: keyof typeof cells) => element('tr', { class: of === 'tool_actual' ? 'tool-large' : '' }, element('th', { scope: 'row' }, say(`group_${of}`)), ...cells[of]);
     return {
         root: element('table', { class: 'tool' }, element('thead', {}, element('tr', {}, element('th', {}), ...components.map((name, i) => element('th', { scope: 'col', class: 'number' }, `${name} [${i < 3 ? unit : '°'}]`)))),
-            element('tbody', {}, row('tool_actual'), row('tool_set'))),
+            element('tbody', {}, row('tool_actual'), row('tool_set')), body),
         update(group: GroupState): void {
+            known = group.tool_known;
+            of_frames.update(group.frames ?? []);
             for (const of of ['tool_actual', 'tool_set'] as const) cells[of].forEach((cell, i) => write(cell, group.tool_known ? fixed(group[of][i]) : '–'));
         },
     };
@@ -114,5 +132,7 @@ function write_facts(facts: Values, group: GroupState): void {
     facts.set('group_tool_speed', group.tool_known ? `${fixed(group.tool_actual_speed, 1)} ${speed}` : '–');
     facts.set('group_path_velocity', `${fixed(group.path_velocity, 1)} ${speed}`);
     facts.set('group_limited', held_back(group));
+    facts.set('group_track', goes_with(group) || '–');
+    facts.set('group_deviation', group.tool_known ? `${fixed(group.path_deviation ?? 0)} ${group.unit}` : '–');
     facts.set('group_programs_override', `${fixed(value(group.override) * 100, 0)} %`);
 }
