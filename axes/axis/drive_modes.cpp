@@ -21,6 +21,8 @@ using namespace std::chrono_literals;
 
 constexpr Duration mode_patience = 500ms;  // a drive that has not taken its mode after this and its own delay will not
 
+constexpr int taking_a_mode = 2;  // cycles from its word to the mode that a drive shows
+
 bool cyclic(DriveMode mode) noexcept {
     return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
 }
@@ -98,16 +100,29 @@ void DriveModes::begin_mode_change(const AxisCommand& command) noexcept {
     modes_.waits = true;
 }
 
-/// The drive has shown the wanted mode for as long as it wants before commands.
+/// Before each step: what the drive is told from this cycle on. A wish that is taken back at once is on its way all the same.
+void DriveModes::note_asked() noexcept {
+    if (modes_.wanted() == modes_.asked_for) return;
+    modes_.asked_for = modes_.wanted();
+    modes_.asked_at = body_.now;
+    modes_.was_another = false;
+}
+
+/// The drive has shown the wanted mode for as long as it wants before commands. What it shows may be older than the wish, where it is the mode that it
+/// was in before the one before: such a word counts once the wish has reached it.
 bool DriveModes::mode_confirmed() noexcept {
     if (!measured_.feedback.fresh) return false;
-    const bool there = measured_.feedback.mode == modes_.wanted();
+    const bool shown = measured_.feedback.mode == modes_.wanted();
+    modes_.was_another = modes_.was_another || !shown;
+    const auto heard = body_.port.setpoint_effective(modes_.asked_at) + body_.round_trip() + taking_a_mode * body_.cycle;
+    const bool there = shown && (modes_.was_another || measured_.feedback.latched >= heard);
     if (there && !modes_.seen) modes_.seen_at = body_.now;
     modes_.seen = there;
     return there && body_.now - modes_.seen_at >= body_.port.capabilities().mode_change_delay;
 }
 
 ModeStep DriveModes::step(Duration period) noexcept {
+    note_asked();
     if (modes_.waits) {
         if (measured_.stands()) modes_.waits = false;
         else modes_.since = body_.now;

@@ -52,6 +52,7 @@ public:
     [[nodiscard]] ModeStep step(Duration period) noexcept;
 
 private:
+    void note_asked() noexcept;
     [[nodiscard]] bool mode_confirmed() noexcept;
     [[nodiscard]] ModeStep leave(bool confirmed, bool late) noexcept;
     [[nodiscard]] ModeStep enter_torque(bool confirmed, bool late) noexcept;

@@ -19,7 +19,12 @@ double torque_bandwidth(Duration cycle) { return cycle > Duration::zero() ? 0.1 
 }  // namespace
 
 ModeState::ModeState(const AxisBody& of_axis, const HomingRuns& homing)
-    : body(of_axis), runs(homing), own(own_mode(body)), former(own), torque(torque_inertia(body), torque_bandwidth(body.cycle)) {}
+    : body(of_axis),
+      runs(homing),
+      own(own_mode(body)),
+      former(own),
+      asked_for(own),
+      torque(torque_inertia(body), torque_bandwidth(body.cycle)) {}
 
 DriveMode ModeState::on_the_way() const noexcept {
     if (runs.drive.busy()) return runs.drive.mode();

@@ -20,6 +20,9 @@ struct ModeState {
     DriveMode former;  ///< before set_controller_mode
     ModePhase phase = ModePhase::steady;
     Instant since{}, seen_at{};
+    DriveMode asked_for;  ///< what the drive was told last, and from when on
+    Instant asked_at{};
+    bool was_another = false;  ///< since then the drive has shown another one: what it shows now is no word of before
     bool waits = false;        ///< for standstill of the motor, before it is asked for
     bool seen = false;         ///< the drive shows the wanted mode
     bool motor_leads = false;  ///< since the last steady cycle the drive was in a mode that takes no set-point

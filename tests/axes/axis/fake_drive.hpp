@@ -54,7 +54,8 @@ public:
     std::int64_t wraps_at_home = 0;  ///< whole ranges of the raw position that the port's unwrapping has counted
     bool homing_fails = false, homing_hangs = false;
     DriveMode forced_mode = DriveMode::none;
-    int mode_delay = 2;  ///< cycles until it has taken a mode
+    int mode_delay = 2;         ///< cycles until it has taken a mode
+    bool modes_travel = false;  ///< each mode that it is told comes to it, `dead_cycles` later, and is seen `latch_age` after that
     bool refuses_torque_mode = false;
     double rated_acceleration = 2e6;  ///< counts/s2 that rated torque gives the free motor
     double load = 0, friction = 0;    ///< rated torques: pulls to negative; against motion
@@ -106,14 +107,14 @@ public:
         const bool other_limits =
             command.torque_limit_positive != last.torque_limit_positive || command.torque_limit_negative != last.torque_limit_negative;
         limits_age_ = other_limits ? 0 : limits_age_ + 1;
-        sent_.push_back({setpoint_effective(now), target, command.velocity, command.torque});
+        sent_.push_back({setpoint_effective(now), target, command.velocity, command.torque, command.mode});
         if (sent_.size() > 64) sent_.pop_front();
         last = command;
     }
 
     const DriveFeedback& decode(Instant now) noexcept override {
         step_power();
-        step_mode();
+        step_mode(now);
         step_motor(now);
         if (silent || offline) {
             feedback_.fresh = false;
@@ -168,7 +169,11 @@ private:
                                                   : PowerState::enabled;
         }
     }
-    void step_mode() {
+    void step_mode(Instant now) {
+        if (modes_travel) {
+            mode_ = at(now - latch_age * cycle).mode;
+            return;
+        }
         if (last.mode == mode_) mode_ticks_ = 0;
         else if (++mode_ticks_ >= std::max(mode_delay, dead_cycles + latch_age + 1) &&
                  takes(last.mode)) {  // with the set-point of the same frame
@@ -292,6 +297,7 @@ private:
         Instant effective{};
         std::int64_t target = 0;
         double velocity = 0, torque = 0;
+        DriveMode mode = DriveMode::cyclic_position;
     };
     /// The newest command in effect at `t`.
     [[nodiscard]] Sent at(Instant t) const {

@@ -203,6 +203,36 @@ TEST(TorqueAxis, SoftwareLimitsHold) {
     EXPECT_GT(rig.view().actual_position, 9);
 }
 
+// A torque that is ended before anything of it is seen: the drive still shows the mode of before, and will be in torque for as long all the same. That is
+// no word of its own.
+TEST(TorqueAxis, AWishThatIsTakenBackAtOnceIsNoModeOfTheDrives) {
+    for (const int dead : {1, 2, 4})
+        for (int cycles = 1; cycles <= 12; ++cycles) {
+            SCOPED_TRACE(::testing::Message() << dead << " cycles away, ended after " << cycles);
+            TorqueRig rig(torque_axis(), [&](FakeDrive& drive) {
+                drive.modes_travel = true;
+                drive.dead_cycles = dead;
+            });
+            rig.accept(torque(0.3, 0, 40));
+            rig.run(cycles);
+            rig.accept(halt());
+            bool was_in_torque = false;
+            for (int i = 0; i < 200; ++i) {
+                rig.step();
+                was_in_torque = was_in_torque || rig.view().drive_mode == DriveMode::cyclic_torque;
+                ASSERT_FALSE(rig.raised(AxisAlarm::drive_mode_mismatch)) << i;
+            }
+            EXPECT_TRUE(was_in_torque) << "it has shown nothing";
+            EXPECT_EQ(rig.view().state, AxisState::Standstill);
+            EXPECT_EQ(rig.view().drive_mode, DriveMode::cyclic_position);
+            // And it takes torque and moves again.
+            rig.accept(torque(0.3, 0, 40));
+            ASSERT_TRUE(rig.run_until([&] { return rig.motor_velocity() > 30; }, 1000));
+            const auto move = rig.accept(absolute(10, 50));
+            ASSERT_TRUE(rig.run_until([&] { return rig.status(move) == CommandStatus::done; }, 2000));
+        }
+}
+
 // A link that fails while the drive is in torque: nobody hears in which mode it is, so nobody can say that it has refused one. The axis, whose error is that
 // it hears nothing, comes to rest along its ramp; a drive that was told to leave its mode before has its time when it answers again.
 TEST(TorqueAxis, ADriveThatIsNotHeardHasNotRefusedItsMode) {
