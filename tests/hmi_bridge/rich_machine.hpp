@@ -86,8 +86,18 @@ inline void draw(FakeMachine& machine, std::uint64_t seed) {
         }
         for (std::size_t i = 0; i < 6; ++i) group.tool.set[i] = number(), group.tool.actual[i] = number();
         for (auto* value : {&group.tool.speed, &group.tool.actual_speed, &group.along.velocity, &group.along.acceleration,
-                            &group.along.to_go, &group.along.progress, &group.override_factor, &group.operators_override})
+                            &group.along.to_go, &group.along.progress, &group.override_factor, &group.operators_override,
+                            &group.along.tool_limit, &group.path_deviation, &group.track.lag})
             *value = number();
+        group.track.kind = static_cast<axes::FrameTrack::Kind>(below(3));
+        group.track.axis = some() ? axes::AxisRef{static_cast<std::uint16_t>(below(5))} : axes::AxisRef{};
+        group.track.in_sync = some();
+        for (auto& place : group.frames.machine) place = some() ? number() : 0;
+        for (std::size_t i = 0; i < group.frames.product.size(); ++i) {
+            group.frames.product[i] = {};
+            if (some()) group.frames.product[i][below(6)] = number();
+            group.frames.leader[i] = some() ? axes::AxisRef{static_cast<std::uint16_t>(below(5))} : axes::AxisRef{};
+        }
         group.along.limiter = static_cast<axes::PathLimiter>(below(5));
         group.along.limiting_place = static_cast<std::uint8_t>(below(6));
         group.along.remaining = Duration{below(1'000'000'000)};

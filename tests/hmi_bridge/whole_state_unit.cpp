@@ -107,9 +107,9 @@ TEST(WholeState, AGroupThatOnlyGoesWithABeltSaysSo) {
     const auto command = [&] { return nlohmann::json::parse(published.socket_state())["groups"][0]["command"]; };
     group.active = 0;
     EXPECT_EQ(command(), "");
-    group.track = axes::FrameTrack::Kind::belt;
+    group.track.kind = axes::FrameTrack::Kind::belt;
     EXPECT_EQ(command(), "MC_TrackConveyorBelt");
-    group.track = axes::FrameTrack::Kind::table;
+    group.track.kind = axes::FrameTrack::Kind::table;
     EXPECT_EQ(command(), "MC_TrackRotaryTable");
     group.active = 5;
     group.active_kind = axes::GroupCommandKind::linear_absolute;
