@@ -13,6 +13,9 @@ constexpr std::size_t verified_points = 4 * per_quarter;  // per cell, and its b
 constexpr double may_miss_velocity = 4e-6, may_miss_acceleration = 4e-6, may_miss_jerk = 2e-4;
 // The error of such a polynomial is as t^3 (1 - t)^3, whose slope vanishes in the middle: its greatest slope by its middle value.
 constexpr double greatest_slope = 3.44;
+// Where q' changes by more than this part from one point to the next, they do not say what is between them.
+constexpr double unresolved = 0.3;
+constexpr int deepest_look = 6;       // halvings of a cell, until they do
 constexpr double looks_closer = 0.9;  // of a limit, from which on peaks between points count
 
 /// q', q'', q''' over an interval through their values at its ends: a polynomial of the fifth degree for q'.
@@ -65,7 +68,64 @@ LimitUse missed(const TimedCurvePoint& a, const TimedCurvePoint& m, const TimedC
     return {first / limits.velocity, second / limits.acceleration, std::fabs(whole.third(0.5) - m.third[axis]) / limits.jerk};
 }
 
+using Points = std::array<TimedCurvePoint, verified_points + 1>;
+
+/// A cusp, or a joint that whips round: narrower than the points lie apart.
+bool turns_between(const Points& points, std::size_t axes) {
+    double before = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        double size = 0, change = 0;
+        for (std::size_t i = 0; i < axes; ++i) {
+            size += points[k].first[i] * points[k].first[i];
+            if (k > 0) change += std::pow(points[k].first[i] - points[k - 1].first[i], 2);
+        }
+        if (k > 0 && change > unresolved * unresolved * std::max(size, before)) return true;
+        before = size;
+    }
+    return false;
+}
+
+/// v2 over a cell at the points, its root, and its slope, which is the acceleration.
+struct Motion {
+    Samples square{}, v{}, slope{};
+    double change = 0;  ///< of the acceleration, by s
+
+    Motion(const CellSquares& q, double length) : change{(q.first - 2 * q.middle + q.last) / (length * length)} {
+        for (std::size_t k = 0; k <= verified_points; ++k) {
+            const double u = static_cast<double>(k) / verified_points, w = 1 - u;
+            square[k] = w * w * q.first + 2 * u * w * q.middle + u * u * q.last;
+            v[k] = std::sqrt(square[k]);
+            slope[k] = (w * (q.middle - q.first) + u * (q.last - q.middle)) / length;
+        }
+    }
+};
+
+/// What is used at the points, of one axis or of the path.
+struct Looks {
+    Samples x{}, y{}, z{};  ///< velocity, acceleration, jerk
+
+    void of_path(std::size_t k, const PathLimits& path, const Motion& m, double velocity_factor) {
+        x[k] = m.v[k] / (path.velocity * velocity_factor);
+        y[k] = m.slope[k] > 0 ? m.slope[k] / path.acceleration : -m.slope[k] / path.deceleration;
+        z[k] = m.change * m.v[k] / path.jerk;
+    }
+    /// `over`: one over its limits.
+    void of_axis(std::size_t k, const PathAxisLimits& over, const Motion& m, double first, double second, double third) {
+        x[k] = first * m.v[k] * over.velocity;
+        y[k] = (first * m.slope[k] + second * m.square[k]) * over.acceleration;
+        z[k] = (first * m.change + 3 * second * m.slope[k] + third * m.square[k]) * m.v[k] * over.jerk;
+    }
+    void add_to(CellUse& use) const;
+};
+
+PathAxisLimits reciprocal(const PathAxisLimits& l) { return {1 / l.velocity, 1 / l.acceleration, 1 / l.jerk}; }
+
 double at_nodes(const Samples& x) { return std::max(std::fabs(x.front()), std::fabs(x.back())); }
+
+void Looks::add_to(CellUse& use) const {
+    use.peak.widen({peak_of(x), peak_of(y), peak_of(z)});
+    use.nodes.widen({at_nodes(x), at_nodes(y), at_nodes(z)});
+}
 
 }  // namespace
 
@@ -160,69 +220,71 @@ CellUse CellCheck::straight_use(std::size_t cell, const CellSquares& q, double v
     return use;
 }
 
+/// The curve is evaluated at all points, and at ever nearer ones while it turns between them.
+CellUse CellCheck::look_directly(double begin, double length, const TimedCurvePoint& first, const TimedCurvePoint& last,
+                                 const CellSquares& q, double velocity_factor, int depth) const {
+    Points points;
+    points.front() = first;
+    points.back() = last;
+    for (std::size_t k = 1; k < verified_points; ++k)
+        points[k] = curve_->at(begin + length * static_cast<double>(k) / verified_points, CurveSide::after);
+    if (depth < deepest_look && turns_between(points, limits_.size())) {
+        const double half = (q.first + 2 * q.middle + q.last) / 4;
+        const TimedCurvePoint& middle = points[verified_points / 2];
+        const CellUse one =
+            look_directly(begin, length / 2, first, middle, {q.first, (q.first + q.middle) / 2, half}, velocity_factor, depth + 1);
+        CellUse both = look_directly(begin + length / 2, length / 2, middle, last, {half, (q.middle + q.last) / 2, q.last}, velocity_factor,
+                                     depth + 1);
+        both.peak.widen(one.peak);
+        both.nodes.widen(one.nodes);
+        return both;
+    }
+    const Motion m(q, length);
+    CellUse use;
+    Looks looks;
+    for (std::size_t k = 0; k <= verified_points; ++k) looks.of_path(k, points[k].path, m, velocity_factor);
+    looks.add_to(use);
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        const PathAxisLimits over = reciprocal(limits_[i]);
+        for (std::size_t k = 0; k <= verified_points; ++k)
+            looks.of_axis(k, over, m, points[k].first[i], points[k].second[i], points[k].third[i]);
+        looks.add_to(use);
+    }
+    return use;
+}
+
 CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_factor) {
     const Traits& t = traits_[cell];
     if (t.straight) return straight_use(cell, q, velocity_factor);
-    Samples square{}, v{}, slope{}, x{}, y{}, z{};
-    double most = 0;
-    for (std::size_t k = 0; k <= verified_points; ++k) {
-        const double u = static_cast<double>(k) / verified_points, w = 1 - u;
-        square[k] = w * w * q.first + 2 * u * w * q.middle + u * u * q.last;
-        v[k] = std::sqrt(square[k]);
-        slope[k] = (w * (q.middle - q.first) + u * (q.last - q.middle)) / t.length;  // the acceleration
-        most = std::max(most, v[k]);
-    }
-    const double c = (q.first - 2 * q.middle + q.last) / (t.length * t.length);
-    const Between way = between(cell, most);
+    const Motion m(q, t.length);
+    const Between way = between(cell, *std::max_element(m.v.begin(), m.v.end()));
+    if (way == Between::nothing) return look_directly(t.begin, t.length, begins_[cell], ends_[cell], q, velocity_factor, 0);
     CellUse use;
-    const auto look = [&] {
-        use.peak.widen({peak_of(x), peak_of(y), peak_of(z)});
-        use.nodes.widen({at_nodes(x), at_nodes(y), at_nodes(z)});
-    };
-    std::array<TimedCurvePoint, verified_points + 1> points;
-    if (way == Between::nothing)
-        for (std::size_t k = 0; k <= verified_points; ++k)
-            points[k] = k == 0 ? begins_[cell]
-                        : k == verified_points
-                            ? ends_[cell]
-                            : curve_->at(t.begin + t.length * static_cast<double>(k) / verified_points, CurveSide::after);
-    for (std::size_t k = 0; k <= verified_points; ++k) {
-        const PathLimits& path = way == Between::nothing ? points[k].path : begins_[cell].path;
-        x[k] = v[k] / (path.velocity * velocity_factor);
-        y[k] = slope[k] > 0 ? slope[k] / path.acceleration : -slope[k] / path.deceleration;
-        z[k] = c * v[k] / path.jerk;
-    }
-    look();
+    Looks looks;
+    for (std::size_t k = 0; k <= verified_points; ++k) looks.of_path(k, begins_[cell].path, m, velocity_factor);
+    looks.add_to(use);
     for (std::size_t i = 0; i < limits_.size(); ++i) {
-        const double over_v = 1 / limits_[i].velocity, over_a = 1 / limits_[i].acceleration, over_j = 1 / limits_[i].jerk;
-        const auto set = [&](std::size_t k, double first, double second, double third) {
-            x[k] = first * v[k] * over_v;
-            y[k] = (first * slope[k] + second * square[k]) * over_a;
-            z[k] = (first * c + 3 * second * slope[k] + third * square[k]) * v[k] * over_j;
-        };
-        const auto exact = [&](std::size_t k, const TimedCurvePoint& p) { set(k, p.first[i], p.second[i], p.third[i]); };
+        const PathAxisLimits over = reciprocal(limits_[i]);
+        const auto exact = [&](std::size_t k, const TimedCurvePoint& p) { looks.of_axis(k, over, m, p.first[i], p.second[i], p.third[i]); };
         const auto part = [&](std::size_t from, std::size_t count, const TimedCurvePoint& a, const TimedCurvePoint& b) {
             const Hermite curve(a, b, i, t.length * static_cast<double>(count) / verified_points);
             exact(from, a);
             for (std::size_t k = 1; k < count; ++k) {
                 const double u = static_cast<double>(k) / static_cast<double>(count);
-                set(from + k, curve.first(u), curve.second(u), curve.third(u));
+                looks.of_axis(from + k, over, m, curve.first(u), curve.second(u), curve.third(u));
             }
         };
-        if (way == Between::nothing) {
-            for (std::size_t k = 0; k <= verified_points; ++k) exact(k, points[k]);
-        } else if (way == Between::quarters) {
+        if (way == Between::quarters) {
             part(0, per_quarter, begins_[cell], quarters_[cell]);
             part(per_quarter, per_quarter, quarters_[cell], middles_[cell]);
             part(2 * per_quarter, per_quarter, middles_[cell], three_quarters_[cell]);
             part(3 * per_quarter, per_quarter, three_quarters_[cell], ends_[cell]);
-            exact(verified_points, ends_[cell]);
         } else {
             part(0, 2 * per_quarter, begins_[cell], middles_[cell]);
             part(2 * per_quarter, 2 * per_quarter, middles_[cell], ends_[cell]);
-            exact(verified_points, ends_[cell]);
         }
-        look();
+        exact(verified_points, ends_[cell]);
+        looks.add_to(use);
     }
     return use;
 }

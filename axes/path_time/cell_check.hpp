@@ -47,6 +47,8 @@ private:
     enum class Between : std::uint8_t { halves, quarters, nothing };
 
     [[nodiscard]] Between between(std::size_t cell, double velocity);
+    [[nodiscard]] CellUse look_directly(double begin, double length, const TimedCurvePoint& first, const TimedCurvePoint& last,
+                                        const CellSquares& squares, double velocity_factor, int depth) const;
     void quarter(std::size_t cell);
     void judge(std::size_t cell);
     [[nodiscard]] CellUse straight_use(std::size_t cell, const CellSquares& squares, double velocity_factor) const;

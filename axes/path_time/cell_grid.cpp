@@ -148,8 +148,9 @@ void CellGrid::split_at_narrow_places() {
 bool CellGrid::too_long(double a, double b) const {
     constexpr double inside = 0.03, features = 8;  // where in a cell is looked, and how many of them it may be long
     const double length = b - a;
-    return length > features * std::min(curve_->feature(a + inside * length, CurveSide::after),
-                                        curve_->feature(b - inside * length, CurveSide::after));
+    double least = unlimited;
+    for (const double part : {inside, 0.5, 1 - inside}) least = std::min(least, curve_->feature(a + part * length, CurveSide::after));
+    return length > features * least;
 }
 
 void CellGrid::add_nodes() {

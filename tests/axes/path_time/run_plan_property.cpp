@@ -121,6 +121,21 @@ TEST(RunPlanProperty, ProgramsOfEveryLengthKeepEveryLimit) {
     EXPECT_EQ(totals.lost, 0u);
 }
 
+// A curve between an arc and a line that leads back: it has a cusp, narrower than the places in which a cell was looked at (jerk 49 % beyond).
+TEST(RunPlanProperty, ACuspBetweenThePlacesThatAreLookedAtKeepsEveryLimit) {
+    Totals totals;
+    RandomProgram random(3974);
+    const double size = random.between_decades(0.1, 1000), velocity = size * random.between_decades(0.3, 10);
+    const int axes = random.whole(1, 3), moves = static_cast<int>(random.between_decades(1, 201));
+    const Path path = random.path(moves, size, axes, velocity, random.uniform(0.8, 1));
+    const PathCurve curve(path, axes);
+    double sharpest = 0;
+    for (double s = 0; s < curve.end(); s += 1e-6) sharpest = std::max(sharpest, 1 / curve.feature(s, CurveSide::after));
+    EXPECT_GT(sharpest, 1e5 / size) << "there is no cusp any more: this shows nothing";
+    plan_all(path, curve, random.limits(axes, velocity), totals);
+    EXPECT_EQ(totals.lost, 0u);
+}
+
 // Through the inverse of an arm of two links, which bends every line: joints' limits hold as well as axes' do.
 TEST(RunPlanProperty, ProgramsThroughAKinematicsKeepEveryLimit) {
     Totals totals;
