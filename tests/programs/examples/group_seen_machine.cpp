@@ -117,6 +117,7 @@ TEST(GroupSeen, TheToolIsToldFromEachFrameThatSomebodySet) {
     ExampleMachine m{"delta-picker"};
     hmi::RuntimeLink link{m.machine()};
     ASSERT_TRUE(m.up());
+    m.run(10ms);
     const auto group = [&] { return Json::parse(hmi::state_json(m.snapshot(), link))["groups"][0]; };
     ASSERT_EQ(group()["frames"].size(), 1u) << "no part is on the belt yet: only the tray is there";
     const auto frame = [&](const Json& of, const char* name) {
@@ -240,7 +241,11 @@ double of_the_snapshot(const runtime::SeenGroup& g, const std::string& name) {
                                               {"active", static_cast<double>(g.active)},
                                               {"error", static_cast<double>(g.error)},
                                               {"queued", static_cast<double>(g.queued)},
-                                              {"interrupted", g.interrupted ? 1.0 : 0.0}};
+                                              {"interrupted", g.interrupted ? 1.0 : 0.0},
+                                              {"path_deviation", g.path_deviation},
+                                              {"track", static_cast<double>(g.track.kind)},
+                                              {"track_in_sync", g.track.in_sync ? 1.0 : 0.0},
+                                              {"track_lag", g.track.lag}};
     if (const auto found = plain.find(name); found != plain.end()) return found->second;
     if (name == "limiting_axis") return along.limiter == axes::PathLimiter::axis ? g.members[along.limiting_place].index + 1.0 : 0.0;
     for (std::size_t i = 0; i < joints.size(); ++i) {
