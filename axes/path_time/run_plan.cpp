@@ -243,6 +243,8 @@ void RunPlanner::take_over(const RunShape& former) {
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
+    const double wanted_first = std::min(along_limits(check_.begin(0), limits_, 1).velocity, check_.begin(0).path.velocity);
+    const auto wanted_below = [&](std::size_t i) { return check_.middle(i).path.velocity < 0.9 * wanted_first; };
     // A lowered velocity factor: braking to what is allowed.
     const Braking braking = braking_to_factor(guessed_below, guessed_share);
     BrakingByWay by_way(braking);
@@ -252,7 +254,10 @@ void RunPlanner::take_over(const RunShape& former) {
     for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
         const double half = (grid_.nodes[i] + grid_.nodes[i + 1]) / 2;
         const double first = former_square(grid_.nodes[i]), middle = former_square(half), last = former_square(grid_.nodes[i + 1]);
-        const double lowered = std::max(braked_square(half), middles_[i]);
+        double lowered = std::max(braked_square(half), middles_[i]);
+        // Behind that braking as well, where the path itself is slower.
+        if (slower && half > task_.from + braking.way() && wanted_below(i))
+            lowered = std::min(lowered, guessed_below * guessed_below * middles_[i]);
         middles_[i] = std::min(std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]), lowered);
         if (middle > 0) first_window_ = static_cast<int>(i) + 1;
     }

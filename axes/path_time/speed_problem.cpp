@@ -142,7 +142,8 @@ void SpeedProblem::add_jerk(const SpeedRow& row) {
 double SpeedProblem::share_of(Bound kind, const CellShare& share) noexcept {
     switch (kind) {
         case Bound::acceleration: return share.acceleration;
-        case Bound::cap: return share.velocity * share.velocity;
+        case Bound::cap:
+        case Bound::held_cap: return share.velocity * share.velocity;
         case Bound::none:
         case Bound::soft_cap: break;
     }
@@ -195,6 +196,7 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
                 if (room == Room::less) bound = std::min(bound, before);
                 if (room == Room::half) bound = std::max(limit, used + 0.5 * (before - used));
                 x.bound[lane] = bound;
+                if (x.kind[lane] == Bound::soft_cap && room == Room::first && holds_ && bound <= limit) x.kind[lane] = Bound::held_cap;
                 if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && bound <= limit;
                 else soft_beyond_ += bound / limit - 1;
                 const double inverse = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
@@ -205,6 +207,20 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
         for (int i = 0; i < p.plain_count; ++i) look(plain_[static_cast<std::size_t>(p.plain + i)], 1);
         for (int i = 0; i < p.jerk_count; ++i) look(jerk_[static_cast<std::size_t>(p.jerk + i)], p.over_v);
     });
+}
+
+/// Caps that a moving beginning may be above are soft again. False: none was held.
+bool SpeedProblem::let_go(const CellRange& range) {
+    bool any = false;
+    each_place(range, [&](Place& p, std::size_t) {
+        for (int i = 0; i < p.plain_count; ++i)
+            for (Bound& kind : plain_[static_cast<std::size_t>(p.plain + i)].kind)
+                if (kind == Bound::held_cap) {
+                    kind = Bound::soft_cap;
+                    any = true;
+                }
+    });
+    return any;
 }
 
 /// Multipliers on the central path of mu.
@@ -420,7 +436,13 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
         return feasible_;
     };
     if (range.first < range.last) {
-        if (!inside && (!feasible_ || soft_beyond_ > 0) && !come_in()) return outcome;
+        if (!inside && (!feasible_ || soft_beyond_ > 0) && !come_in()) {
+            if (!holds_ || !let_go(range)) return outcome;
+            holds_ = false;
+            outcome = solve(d, wanted, guess, witness);
+            holds_ = true;
+            return outcome;
+        }
         double mu = (guess == SpeedGuess::near ? 0.01 : 0.1) / sides;
         center(range, mu);
         for (const int most = outcome.steps + max_steps; outcome.steps < most && !outcome.settled;) {

@@ -91,7 +91,8 @@ public:
 private:
     using Lanes [[gnu::vector_size(16)]] = double;  // two sides at once
     enum class Room : std::uint8_t { first, less, half };
-    enum class Bound : std::uint8_t { none, acceleration, cap, soft_cap };
+    /// held_cap: a soft cap that the guess was inside of, so that it holds as the others do.
+    enum class Bound : std::uint8_t { none, acceleration, cap, soft_cap, held_cap };
     struct Triple {
         double g[3] = {0, 0, 0};  // of the middles of the cell before, of the cell, of the cell behind
         double k = 0;
@@ -121,6 +122,7 @@ private:
     template <class Do>
     void each_place(const CellRange& range, const Do& act);
     void look_at_squares(const CellRange& range);
+    bool let_go(const CellRange& range);
     void relax(const CellRange& range, Room room, double beyond);
     void center(const CellRange& range, double mu);
     void assemble(const CellRange& range, double mu);
@@ -141,6 +143,7 @@ private:
     double scale_ = 1;      // of the goal
     double decrement_ = 0;  // Newton's: what a step promises
     bool feasible_ = false;
+    bool holds_ = true;       // soft caps are held where the guess is inside
     double soft_beyond_ = 0;  // how far soft caps are relaxed, all together
 };
 

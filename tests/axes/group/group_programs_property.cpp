@@ -157,7 +157,12 @@ private:
         if (way.kind == Way::Kind::joints)
             for (std::size_t i = 0; i < way.members; ++i) size += std::abs(now.q[i]);
         const double along = place.share * way.length, left = way.length - along;
-        const bool rounded = along < reach(k, way.length) || (k + 1 < moves_.size() && left < reach(k + 1, way.length));
+        const bool on_it = place.off <= 1e-9 * size && place.turned_off <= 1e-9;
+        if (k != last_) came_ = false;
+        came_ = came_ || on_it;
+        last_ = k;
+        const bool rounded =
+            along < reach(k, way.length) || (k + 1 < moves_.size() && left < reach(k + 1, way.length)) || on_mixed_curve(k, on_it);
         if (!rounded) {
             ASSERT_LE(place.off, 1e-9 * size) << "move " << k << " at " << along << " of " << way.length << ", cycle " << cycle_;
             ASSERT_LE(place.turned_off, 1e-9) << "move " << k << " at " << along << " of " << way.length << ", cycle " << cycle_;
@@ -172,6 +177,12 @@ private:
         ASSERT_LE(place.off, allowed + 1e-9 * size) << "move " << k << ", " << nearest << " from a corner of it";
     }
 
+    /// A curve between a way of the axes and one of the tool may be anywhere beside both, and the nearest place of either then says nothing: in front of
+    /// move k until it is come to, behind it from where it is left.
+    bool on_mixed_curve(std::size_t k, bool on_it) const {
+        const auto curve = [&](std::size_t i) { return i > 0 && i < moves_.size() && mixed(i) && reach(i, moves_[i].way.length) > 0; };
+        return !on_it && ((curve(k) && !came_) || (curve(k + 1) && came_));
+    }
     /// In front of it a way of the axes meets one of the tool.
     bool mixed(std::size_t k) const { return (moves_[k].way.kind == Way::Kind::joints) != (moves_[k - 1].way.kind == Way::Kind::joints); }
     /// How far from the corner in front of move k a curve may begin or end, along either: 0 where none is asked for.
@@ -226,6 +237,8 @@ private:
     std::vector<CommandId> ids_;
     std::size_t given_ = 0, finished_ = 0, cycle_ = 0, resumes_ = 0;
     bool halted_ = false;
+    std::size_t last_ = 0;
+    bool came_ = false;  // to the way of the active command
 };
 
 /// Between two places a cycle apart the members go, to the fourth power of it, as the cubic does that has both their velocities.
@@ -281,6 +294,12 @@ void compare(const std::vector<Passed>& free, const std::vector<Passed>& disturb
         }
         double cost = 0;
         for (std::size_t i = near > 2 ? near - 2 : 0; i < std::min(near + 4, costs.size()); ++i) cost = std::max(cost, costs[i]);
+        // Where a corner is passed at rest between two cycles, no curve through them has it: it is as near as they can come in that time.
+        if (free[near].command != free[near + 1].command) {
+            double fastest = 0;
+            for (std::size_t k = 0; k < members; ++k) fastest += std::abs(free[near].velocity[k]) + std::abs(free[near + 1].velocity[k]);
+            cost += 4 * fastest * cycle;
+        }
         totals.beside = std::max(totals.beside, (best - cost / 4) / size);
         ASSERT_LE(best, 1e-9 * size + cost / 4) << "beside the path at " << near;
     }
