@@ -264,6 +264,44 @@ TEST(GroupCorner, AScaraGoesOverFromItsJointsToALine) {
     EXPECT_NEAR(end[1], at[1] + 20, 1e-9);
 }
 
+// G-060 with mcTMStartVelocity: each side where it would brake, in its own unit. A line of the tool at 50 mm/s, and then one joint alone that says no velocity: 360 degrees/s, 3600, 72000 are
+// what its axis has, so braking from that takes v^2/2a + v a/2j = 18 + 9 = 27 degrees, and the curve half of it at a factor of 0.5. Behind it all other joints stand.
+TEST(GroupCorner, WhatAMoveOfTheAxesLeavesOutItsAxesSay) {
+    KinematicsDescription description{.arm = ScaraLengths{.first = 200, .second = 150, .height = 0}};
+    description.joints[0].unit = description.joints[1].unit = description.joints[3].unit = of_a_degree;
+    const AxisLimits turning{.velocity = 360, .acceleration = 3600, .deceleration = 3600, .jerk = 72000};
+    const AxisLimits lifting{.velocity = 200, .acceleration = 2000, .deceleration = 2000, .jerk = 40000};
+    GroupRig rig({group_axis("a1", turning), group_axis("a2", turning), group_axis("z", lifting), group_axis("a4", turning)},
+                 arm_of(description));
+    rig.enable();
+    constexpr JointVector corner{-60, 60, 0, 0}, end{60, 60, 0, 0};
+    const auto go = [&](GroupCommand command) {
+        const auto given = rig.give(command);
+        EXPECT_TRUE(rig.until([&] { return rig.status(given.id) == CommandStatus::done; }, 9000));
+    };
+    go({.kind = GroupCommandKind::direct_absolute, .target = corner});
+    auto away = line_by({-60, 40, 0}, 100);
+    away.frame = mcMCS;
+    go(away);
+    auto back = line_by({60, -40, 0}, 0);
+    back.frame = mcMCS;
+    back.dynamics = {50, 500, 500, 5000};
+    (void)rig.give(back);
+    const auto second =
+        rig.give(rounded({.kind = GroupCommandKind::direct_absolute, .target = end}, mcTMStartVelocity, 0.5, PathDynamics{}));
+    double joins = 0;
+    CornerPassed passed = CornerPassed::none;
+    ASSERT_TRUE(rig.until(
+        [&] {
+            if (rig.status(second.id) == CommandStatus::active) passed = rig.view().corner;
+            if (std::abs(rig.point()[1] - 60) > 1e-6) joins = rig.point()[0] + 60;
+            return rig.status(second.id) == CommandStatus::done;
+        },
+        9000));
+    EXPECT_EQ(passed, CornerPassed::as_asked);
+    EXPECT_NEAR(joins, 13.5, 0.5) << "the last set-point in front of where it joins the joints' line";
+}
+
 // G-060: what became of the curve is shown while the command runs: as it was asked for, smaller, or stood at.
 TEST(GroupCorner, ADegradationIsVisible) {
     const auto seen = [](const JointVector& second, double distance) {
