@@ -1,6 +1,7 @@
 // MC_SyncGroupToAxis where it is tight: at the ends of the path, in front of bends, with masters that others move, and where there is nothing to go. The rig asserts the limits and the
 // continuity of every member in every cycle.
 
+#include "core/guard/allocation_guard.hpp"
 #include "tests/fb_library/gcode_path/driven_rig.hpp"
 
 namespace taktwerk::fb {
@@ -147,6 +148,42 @@ TEST(DrivenEnds, AMasterThatBendsTooHardIsNamed) {
     ASSERT_TRUE(rig.plc.until([&] { return rig.state() == GroupState::GroupErrorStop; }, 100));
     EXPECT_EQ(rig.plc.rig.view().error, static_cast<std::uint16_t>(ErrorId::path_limit));
     ASSERT_TRUE(rig.comes_to_rest());
+}
+
+// A thousand pieces, two thirds of a turn about (0, 30) as chords of 0.126 with rounded corners: gone on, to a stop and back as one circle is, no further than half of P from the chords, and
+// nothing allocates while braking has to be looked for over many sections.
+TEST(DrivenEnds, AThousandPiecesAreOnePath) {
+    std::string text = "G21 G90 G64 P0.02\n";
+    for (int i = 1; i <= 1000; ++i) {
+        char line[64];
+        std::snprintf(line, sizeof line, "G1 X%.6f Y%.6f F3000\n", 30 * std::sin(i * 0.0042), 30 - 30 * std::cos(i * 0.0042));
+        text += line;
+    }
+    DrivenRig rig(text + "M2\n");
+    rig.sync.Execute = true;
+    ASSERT_TRUE(rig.plc.until([&] { return rig.sync.InSync; }, 100)) << static_cast<int>(rig.sync.ErrorID);
+    const double from = rig.at_master();
+    const auto off_circle = [&] { return std::abs(std::hypot(rig.tool()[0], rig.tool()[1] - 30) - 30); };
+    for (const double to : {90.0, 20.0, 60.0}) {
+        rig.master_to(from + to, 12);
+        ASSERT_TRUE(rig.plc.until(
+            [&] {
+                EXPECT_LE(off_circle(), 0.0101);
+                EXPECT_TRUE(rig.sync.InSync) << rig.plc.rig.view().error;
+                return rig.master_stands() || !rig.sync.InSync;
+            },
+            20'000));
+        rig.plc.run(2);
+        EXPECT_NEAR(std::atan2(rig.tool()[0], 30 - rig.tool()[1]), to / 30, 2e-3);
+    }
+    rig.master_at(12);
+    rig.plc.run(300);
+    for (int i = 0; i < 100; ++i) {
+        rig.plc.rig.now += axes::test::GroupRig::cycle;
+        NoAllocationScope none;
+        rig.plc.rig.groups.plan(rig.plc.rig.now, axes::test::GroupRig::cycle);
+        ASSERT_EQ(none.used().total(), 0u);
+    }
 }
 
 // A master without power is pushed by whoever pushes it: it is followed, or that has a name.
