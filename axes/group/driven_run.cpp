@@ -1,5 +1,6 @@
 // A run that an axis drives: its length comes from PathDrive, and each set-point is looked at before it is given. MC_SyncGroupToAxis.
 
+#include <algorithm>
 #include <cmath>
 
 #include "axes/group/path_run_inside.hpp"
@@ -7,7 +8,24 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double limit_digits = 1e-9, jerk_slack = 1e-3;
+constexpr double limit_digits = 1e-9, jerk_slack = 1e-3, last_digits = 1e-15;
+
+/// One motion, inside what a member has, and what its axis takes (Axis::lead). Of what is measured place and velocity are what they are.
+bool goes_on(const MotionState& from, const MotionState& to, const MemberLimits& limits, bool planned, double period) noexcept {
+    const double more = 1 + limit_digits, change = limits.acceleration * period, step = to.velocity - from.velocity;
+    const double way = to.position - from.position, far = last_digits * std::abs(to.position);
+    if (!(std::abs(to.velocity) <= limits.velocity * more && std::abs(way) <= limits.velocity * period * more + far)) return false;
+    if (!(std::abs(to.acceleration) <= limits.acceleration * more && std::abs(step) <= change * more)) return false;
+    if (!(std::abs(way - period * (to.velocity + from.velocity) / 2) <= change * period + far)) return false;
+    // What it speeds up by is taken away with its jerk before it is too fast.
+    const double soon = to.velocity * to.acceleration > 0 ? to.acceleration * to.acceleration / (2 * limits.jerk) : 0;
+    if (std::abs(to.velocity) + soon > limits.velocity * more) return false;
+    if (!planned) return true;
+    // A master that is planned behind the group and bends harder than half of that: what was foreseen of it does not fit to what it does.
+    const double bend = limits.jerk * period * (1 + jerk_slack);
+    return std::abs(to.acceleration - from.acceleration) <= bend + limit_digits &&
+           std::abs(step - period * (to.acceleration + from.acceleration) / 2) <= bend * period / 2 + limit_digits;
+}
 
 }  // namespace
 
@@ -42,14 +60,27 @@ void PathRun::find_part() noexcept {
 bool PathRun::too_fast_ahead() const noexcept {
     const auto& in = *inside_;
     const auto& at = in.drive.state();
-    const auto& room = in.drive.path().room;
-    const RunSection& run = in.track->section(in.driven_part);
-    const double s = in.place(), faster = at.velocity * at.acceleration > 0 ? at.acceleration : 0;
-    const double soon = std::abs(at.velocity) + faster * faster / (2 * room.jerk);
-    if (soon > run.fastest * (1 + limit_digits)) return true;
-    const bool on = at.velocity >= 0;
-    const double left = on ? run.section.end() - s : s - run.section.begin, then = on ? run.fastest_at_end : run.fastest_at_begin;
-    return soon * soon > (then * then + 2 * braking_counted_on * room.deceleration * std::max(left, 0.0)) * (1 + limit_digits);
+    const auto& path = in.drive.path();
+    const bool on = at.velocity > 0 || (at.velocity == 0 && at.acceleration >= 0);
+    // Its acceleration has to go first: so fast it becomes, and so far on.
+    const double faster = at.velocity * at.acceleration > 0 ? std::abs(at.acceleration) : 0, t = faster / path.room.jerk;
+    const double soon = std::abs(at.velocity) + faster * t / 2;
+    double way = std::abs(at.velocity) * t + faster * t * t / 3, s = in.place();
+    std::uint32_t part = in.driven_part;
+    for (std::uint32_t looked = 0; looked < path.sections; ++looked) {
+        const RunSection& run = in.track->section(part);
+        if (soon > run.fastest * (1 + limit_digits)) return true;
+        const double left = (on ? run.section.end() - s : s - run.section.begin) - way;
+        if (left >= 0) {
+            const double then = on ? run.fastest_at_end : run.fastest_at_begin;
+            return soon > fastest_in_front_of(then, left, path.room) * (1 + limit_digits);
+        }
+        way = -left;
+        if (part == (on ? path.sections - 1 : 0) && path.driver.mode != mcPeriodic) return false;
+        part = on ? (part + 1) % path.sections : (part + path.sections - 1) % path.sections;
+        s = on ? in.track->section(part).section.begin : in.track->section(part).section.end();
+    }
+    return false;
 }
 
 /// Where that is for the members. False: a set-point would be outside a limit, and nothing has changed.
@@ -61,15 +92,16 @@ bool PathRun::look_driven() noexcept {
     find_part();
     look();
     bool inside = fault_ == ErrorId::none;
+    // What is measured trembles: its acceleration is told no sooner than the members could have it.
+    for (std::size_t k = 0; !in.drive.planned() && k < in.members; ++k) {
+        const double most = in.limits[k].jerk * in.period;
+        in.acceleration[k] = std::clamp(in.acceleration[k], acceleration[k] - most, acceleration[k] + most);
+        states_[in.places[k]].acceleration = in.acceleration[k];
+    }
     for (std::size_t k = 0; inside && k < in.members; ++k) {
-        const auto& limits = in.limits[k];
-        const double jump = std::abs(in.acceleration[k] - acceleration[k]);
-        // What is measured trembles: of that the jerk is what it is.
-        const bool smooth = !in.drive.planned() || jump <= limits.jerk * in.period * (1 + jerk_slack) + limit_digits;
-        inside = smooth && std::abs(in.velocity[k]) <= limits.velocity * (1 + limit_digits) &&
-                 std::abs(in.acceleration[k]) <= limits.acceleration * (1 + limit_digits) &&
-                 std::abs(in.velocity[k] - velocity[k]) <= limits.acceleration * in.period * (1 + jerk_slack) + limit_digits &&
-                 in.q[k] <= limits.high + limit_digits && in.q[k] >= limits.low - limit_digits;
+        const MotionState from{q[k], velocity[k], acceleration[k]}, to{in.q[k], in.velocity[k], in.acceleration[k]};
+        inside = goes_on(from, to, in.limits[k], in.drive.planned(), in.period) && in.q[k] <= in.limits[k].high + limit_digits &&
+                 in.q[k] >= in.limits[k].low - limit_digits;
     }
     if (inside) return true;
     in.q = q;
@@ -85,7 +117,7 @@ void PathRun::go_driven(Duration period) noexcept {
     in.before = in.acceleration;
     in.drive.step(period);
     find_part();
-    const bool ahead = in.drive.follows() && too_fast_ahead();
+    const bool ahead = in.drive.may_brake() && too_fast_ahead();
     if (!ahead && look_driven()) return;
     fault_ = ErrorId::none;
     if (in.drive.brake_instead(ErrorId::path_limit, period) && look_driven()) return;

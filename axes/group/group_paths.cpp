@@ -97,8 +97,9 @@ void AxisGroup::see_selection() noexcept {
 /// It begins in its turn, and has no end: nothing waits behind it.
 bool AxisGroup::is_driven() const noexcept {
     if (queue_.active().command.kind == GroupCommandKind::driven_path) return true;
-    const auto waiting = queue_.waiting();
-    return waiting > 0 && queue_.waiting_at(waiting - 1).command.kind == GroupCommandKind::driven_path;
+    for (std::size_t i = 0; i < queue_.waiting(); ++i)
+        if (queue_.waiting_at(i).command.kind == GroupCommandKind::driven_path) return true;
+    return false;
 }
 
 bool AxisGroup::driven_by(AxisRef axis) const noexcept {

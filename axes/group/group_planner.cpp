@@ -217,7 +217,7 @@ bool GroupPlanner::append_mixed(Run& run, const GroupOrder& move, const MoveShap
     behind.run.carried = move.place.carried;
     behind.run.configuration = end_.configuration;
     const Pose& tool = shape.through_arm ? move.place.carried.tool : came.carried.tool;
-    const auto corner = mixed_corner(before, behind, mixed_request_of(run, move), tool, space_);
+    const auto corner = mixed_corner(before, behind, mixed_request_of(run, move, shape), tool, space_);
     if (!corner) return false;
     PathSection section;
     section.element = corner->curve;
@@ -232,15 +232,25 @@ bool GroupPlanner::append_mixed(Run& run, const GroupOrder& move, const MoveShap
 }
 
 /// By a velocity: each side brakes in its own unit.
-MixedRequest GroupPlanner::mixed_request_of(const Run& run, const GroupOrder& move) const {
+MixedRequest GroupPlanner::mixed_request_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const {
     const double parameter = move.command.transition_parameter;
     if (move.command.transition == mcTMCornerDistance) return {.distance = parameter};
     if (move.command.transition == mcTMMaxCornerDeviation) return {.deviation = parameter};
     const PathFeed came = run.curve.feed_at(run.curve.path.length());
-    PathFeed goes = came;
-    const auto said = feed_of(move.command.dynamics);
-    if (said.velocity > 0) goes.velocity = said.velocity;
-    if (said.acceleration > 0) goes.acceleration = said.acceleration;
+    RunCurve next(space_.arm, space_.members, space_.limits,
+                  space_.tool_velocity);  // the later one by itself: what it leaves out its own axes say
+    PathMove element;
+    element.element = shape.element;
+    element.chart = shape.chart;
+    element.feed = feed_of(move.command.dynamics);
+    (void)next.path.append(element, {}, 0);
+    RunCurve::Seen seen;
+    seen.run.through_arm = shape.through_arm;
+    seen.run.carried = move.place.carried;
+    seen.run.configuration = end_.configuration;
+    seen.members = shape.members.empty() ? std::vector<MemberVector>{end_.members} : shape.members;
+    next.seen.push_back(seen);
+    const PathFeed goes = next.feed_at(0);
     return {.before = parameter * stopping_way(came.velocity, came.deceleration, came.jerk),
             .behind = parameter * stopping_way(goes.velocity, goes.acceleration, goes.jerk)};
 }

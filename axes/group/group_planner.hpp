@@ -68,7 +68,7 @@ private:
     [[nodiscard]] bool append(Run& run, const GroupOrder& move, const MoveShape& shape, bool blended);
     /// Behind a path of the other kind of points.
     [[nodiscard]] bool append_mixed(Run& run, const GroupOrder& move, const MoveShape& shape);
-    [[nodiscard]] MixedRequest mixed_request_of(const Run& run, const GroupOrder& move) const;
+    [[nodiscard]] MixedRequest mixed_request_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
     [[nodiscard]] bool has_room(const Run& run) const noexcept;
     /// The last two sections of the run, where a curve leads to this move; the last one.
     [[nodiscard]] RunCurve::Seen corner_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const;

@@ -108,7 +108,7 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
         if (const auto error = refuse_track(command); error != ErrorId::none) return error;
         if (command.execution == mcImmediately) return ErrorId::none;
         // No motion of the group ends there, so nothing would ever be behind it.
-        if (state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming) return ErrorId::state_forbids;
+        if (state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming || is_driven()) return ErrorId::state_forbids;
         return queue_.full() ? ErrorId::queue_full : ErrorId::none;
     }
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;

@@ -14,20 +14,36 @@ constexpr double digits = 1e-9;  // of a length
 /// Nothing that a master can do is held back: limits are watched, member by member (PathRun).
 constexpr double beyond_master = 2;
 
-/// Where it comes to rest if it begins to brake now: first its acceleration is taken away.
-double rest_of(const MotionState& at, const MotionLimits& ramp) noexcept {
-    const double sense = at.velocity < 0 ? -1 : 1;
-    const double faster = std::max(0.0, sense * at.acceleration), t = faster / ramp.jerk;
-    const double speed = std::abs(at.velocity) + faster * t / 2;
-    const double until = std::abs(at.velocity) * t + faster * t * t / 3;
+double braking_way(double speed, const MotionLimits& ramp) noexcept {
     const double a = ramp.deceleration, j = ramp.jerk;
-    const double braking = speed * j >= a * a ? speed * speed / (2 * a) + speed * a / (2 * j) : speed * std::sqrt(speed / j);
-    return at.position + sense * (until + braking);
+    return speed * j >= a * a ? speed * speed / (2 * a) + speed * a / (2 * j) : speed * std::sqrt(speed / j);
+}
+
+/// Between which places it stays if it begins to brake now: first its acceleration is taken away, and against its velocity that may turn it round.
+struct RestSpan {
+    double low, high;
+};
+RestSpan rest_span(const MotionState& at, const MotionLimits& ramp) noexcept {
+    const double sense = at.velocity < 0 ? -1 : 1, v = std::abs(at.velocity), a = sense * at.acceleration, t = std::abs(a) / ramp.jerk;
+    double on = 0, back = 0;
+    if (a >= 0) {
+        on = v * t + a * t * t / 3 + braking_way(v + a * t / 2, ramp);
+    } else {
+        on = braking_way(v, ramp);
+        const double turned = -a * t / 2 - v;
+        if (turned > 0) back = std::max(0.0, -a * t * t / 3 - v * t + braking_way(turned, ramp));
+    }
+    return sense > 0 ? RestSpan{at.position - back, at.position + on} : RestSpan{at.position - on, at.position + back};
 }
 
 double least_said(double said, double most) noexcept { return said > 0 ? std::min(said, most) : most; }
 
 }  // namespace
+
+double fastest_in_front_of(double then, double left, const MotionLimits& ramp) noexcept {
+    const double lost = ramp.deceleration * ramp.deceleration / (2 * ramp.jerk);
+    return std::max(then, std::sqrt(lost * lost + then * then + 2 * ramp.deceleration * std::max(left, 0.0)) - lost);
+}
 
 ErrorId PathDrive::refuse(const PathDriver& driver, const GroupMembers& members) const noexcept {
     if (driver.mode > mcPeriodic) return ErrorId::invalid_parameter;
@@ -100,11 +116,13 @@ MotionState PathDrive::next_of(Follower& follower, Duration period) const noexce
     return follower.step(wanted, {}, state_, plain, period);
 }
 
-bool PathDrive::inside(const MotionState& at) const noexcept {
-    if (path_.driver.mode == mcPeriodic) return true;
-    const double grain = digits * std::max(1.0, path_.length), rests = rest_of(at, path_.room);
-    const auto on_path = [&](double s) { return s >= -grain && s <= path_.length + grain; };
-    return on_path(at.position) && on_path(rests);
+std::optional<double> PathDrive::end_passed(const MotionState& at) const noexcept {
+    if (path_.driver.mode == mcPeriodic) return std::nullopt;
+    const double grain = digits * std::max(1.0, path_.length);
+    const auto [low, high] = rest_span(at, path_.room);
+    if (!(low >= -grain)) return 0.0;
+    if (!(high <= path_.length + grain)) return path_.length;
+    return std::nullopt;
 }
 
 /// At rest: it goes with the master as soon as that leads along the path.
@@ -117,7 +135,7 @@ void PathDrive::wait(Duration period) noexcept {
     trial.begin(line, locked_ ? RunDown::position : RunDown::velocity, limits(wanted.velocity));
     const MotionState next = next_of(trial, period);
     in_sync_ = false;
-    if (!inside(next)) return;
+    if (end_passed(next)) return;
     follower_ = trial;
     phase_ = Phase::following;
     state_ = next;
@@ -125,15 +143,16 @@ void PathDrive::wait(Duration period) noexcept {
 
 void PathDrive::follow(Duration period) noexcept {
     const MotionState next = next_of(follower_, period);
-    if (!inside(next)) return plan_to_end(next.position > path_.length / 2 ? path_.length : 0, path_.room);
+    if (const auto end = end_passed(next)) return plan_to_end(*end, path_.room);
     state_ = next;
 }
 
 /// To rest at an end of the path, which it does not pass.
 void PathDrive::plan_to_end(double end, const MotionLimits& ramp) noexcept {
-    const double faster = std::max(0.0, state_.velocity * state_.acceleration) > 0 ? state_.acceleration : 0;
+    const double v = std::abs(state_.velocity), change = state_.acceleration * state_.acceleration / (2 * ramp.jerk);
+    const double fastest = state_.velocity * state_.acceleration > 0 ? v + change : std::max(v, change - v);
     MotionLimits most = ramp;
-    most.velocity = std::max(std::abs(state_.velocity) + faster * faster / (2 * ramp.jerk), 1e-3 * path_.room.velocity);
+    most.velocity = std::max(fastest, 1e-3 * path_.room.velocity);
     plan_ = plan_to_position(state_, end, most);
     since_ = {};
     phase_ = Phase::ending;
@@ -173,6 +192,7 @@ void PathDrive::stand(const PathDynamics& wanted) noexcept {
     ramp.deceleration = least_said(wanted.deceleration, ramp.deceleration);
     ramp.jerk = least_said(wanted.jerk, ramp.jerk);
     ramp.velocity = std::max(ramp.velocity, 2 * std::abs(state_.velocity));
+    soft_ = ramp.deceleration < path_.room.deceleration || ramp.jerk < path_.room.jerk;
     plan_ = plan_stop(state_, ramp);
     const double rests = plan_.profile.at(plan_.profile.duration()).position;
     if (path_.driver.mode != mcPeriodic && (rests < 0 || rests > path_.length)) plan_to_end(rests < 0 ? 0 : path_.length, path_.room);
@@ -188,10 +208,10 @@ void PathDrive::go() noexcept {
 }
 
 bool PathDrive::brake_instead(ErrorId why, Duration period) noexcept {
-    const bool followed = follows();
+    const bool followed = follows(), may = may_brake();
     state_ = before_;
-    if (!followed) return false;
-    fault_ = why;
+    if (!may) return false;
+    if (followed) fault_ = why;
     stand({});
     run_plan(period);
     return true;

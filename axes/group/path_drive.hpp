@@ -17,8 +17,9 @@
 
 namespace taktwerk::axes {
 
-/// Of the deceleration that a ramp along the path may have, what looking ahead counts on: the rest is what its jerk costs.
-inline constexpr double braking_counted_on = 0.5;
+/// How fast it may be `left` in front of a place that may be passed at `then`, for a ramp of this deceleration and jerk: u/s without acceleration. Beside
+/// braking at once a ramp loses v a/2j of way, so that v^2 + v a^2/j = then^2 + 2 a left; at `then` it needs none.
+[[nodiscard]] double fastest_in_front_of(double then, double left, const MotionLimits& ramp) noexcept;
 
 /// What the cycle has to know of a path that an axis drives, beside its sections.
 struct DrivenPath {
@@ -48,8 +49,11 @@ public:
     void stand(const PathDynamics& ramp) noexcept;
     /// After that: comes up to the master's velocity again.
     void go() noexcept;
-    /// The step that was made is taken back, and a ramp to rest made in its place. False: it was that already.
+    /// The step that was made is taken back, and a ramp to rest made in its place, as hard as the path leaves. False: it was that already.
+    /// `why`: where it follows; a ramp that was asked for gets harder without a fault.
     [[nodiscard]] bool brake_instead(ErrorId why, Duration period) noexcept;
+    /// It does not brake as hard as the path leaves already.
+    [[nodiscard]] bool may_brake() const noexcept { return follows() || (phase_ == Phase::braking && soft_); }
 
     [[nodiscard]] bool on() const noexcept { return phase_ != Phase::off; }
     [[nodiscard]] bool follows() const noexcept {
@@ -80,7 +84,8 @@ private:
     [[nodiscard]] EndlessMotion demand() const noexcept;
     [[nodiscard]] FollowerLimits limits(double demanded) const noexcept;
     [[nodiscard]] MotionState next_of(Follower& follower, Duration period) const noexcept;
-    [[nodiscard]] bool inside(const MotionState& at) const noexcept;
+    /// The end that could not be stood at any more.
+    [[nodiscard]] std::optional<double> end_passed(const MotionState& at) const noexcept;
     void wait(Duration period) noexcept;
     void follow(Duration period) noexcept;
     void run_plan(Duration period) noexcept;
@@ -101,6 +106,7 @@ private:
     Phase phase_ = Phase::off;
     ErrorId fault_ = ErrorId::none;
     bool planned_ = true, in_sync_ = false, locked_ = false;
+    bool soft_ = false;     // the ramp of stand() is softer than the path would leave
     bool watched_ = false;  // its master, since it began
 };
 

@@ -38,15 +38,16 @@ MotionLimits room_at(const WayPoint& w, const MoveSpace& space) noexcept {
     return room;
 }
 
-/// In a bend a ramp costs jerk beside its own: 3 q'' v a. How fast it may be gone so that it can be braked there, with whatever acceleration braking from
-/// that velocity comes to.
+/// In a bend a ramp costs jerk beside its own: 3 q'' v a. How fast it may be gone so that it can be braked there, with whatever acceleration a ramp to rest
+/// has left at that velocity, from wherever it comes.
 double fastest_in_bend(const WayPoint& w, const MotionLimits& ramp, const MoveSpace& space) noexcept {
     double least = unbounded;
     for (std::size_t i = 0; i < space.members; ++i) {
-        const double second = std::abs(w.second[i]), third = std::abs(w.third[i]), most = (1 - share_of_ramps) * space.limits[i].jerk;
+        const double second = std::abs(w.second[i]), third = std::abs(w.third[i]);
+        const double most = space.limits[i].jerk - std::abs(w.first[i]) * ramp.jerk;  // what the ramp's own leaves: half of it at least
         if (second <= 1e-12 && third <= 1e-12) continue;
         const auto takes = [&](double v) {
-            return third * v * v * v + 3 * second * v * std::min(ramp.deceleration, std::sqrt(ramp.jerk * v));
+            return third * v * v * v + 3 * second * v * std::min(ramp.deceleration, std::sqrt(2 * ramp.jerk * v));
         };
         double low = 0, high = third > 1e-12 ? std::cbrt(most / third) : most / (3 * second * ramp.deceleration) + most;
         for (int k = 0; k < halvings && takes(high) > most; ++k) {
@@ -124,7 +125,7 @@ bool GroupPlanner::refuse_laid(const GroupOrder& move, ErrorId error) {
 }
 
 bool GroupPlanner::lay_done(const GroupOrder& move) {
-    if (!walk_->laid) return refuse_laid(move, ErrorId::none);
+    if (!walk_->laid) return refuse_laid(move, ErrorId::path_stands);  // it has no length that an axis could drive
     Run& run = *last();
     const auto& path = run.curve.path;
     const auto mode = move.command.driver.mode;
@@ -152,7 +153,7 @@ void GroupPlanner::look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const {
     };
     MotionLimits room{unbounded, unbounded, unbounded, unbounded};
     for (std::size_t i = 0; i < count; ++i) {
-        MotionLimits here{unbounded, unbounded, unbounded, unbounded};
+        MotionLimits here{space_.tool_velocity, unbounded, unbounded, unbounded};  // its length is the way of the tool's point
         for (int k = 0; k <= looks_on_section; ++k) here = lesser_room(here, room_at(look(i, k), space_));
         seen[i].run.fastest = here.velocity;
         room = lesser_room(room, here);
@@ -162,21 +163,23 @@ void GroupPlanner::look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const {
             seen[i].run.fastest = std::min(seen[i].run.fastest, fastest_in_bend(look(i, k), room, space_));
         room.velocity = std::min(room.velocity, seen[i].run.fastest);
     }
-    // From each end as fast as braking leads to what lies behind; a lap goes on at its other end.
-    const double gain = 2 * braking_counted_on * room.deceleration;
-    const auto behind = [&](double fastest, double then, double length) {
-        return std::min(fastest, std::sqrt(then * then + gain * length));
+    // At the ends of each section as fast as braking leads to what lies behind; a lap goes on at its other end.
+    const bool laps = mode == mcPeriodic;
+    const double lost = room.deceleration * room.deceleration / room.jerk;
+    const auto in_front_of = [&](std::size_t from, bool on) {
+        double fastest = unbounded, way = 0;
+        for (std::size_t k = 1; k <= count; ++k) {
+            if (!laps && (on ? from + k >= count : k > from)) break;
+            const std::size_t i = (on ? from + k : from + count - k) % count;
+            fastest = std::min(fastest, fastest_in_front_of(seen[i].run.fastest, way, room));
+            way += sections[i].length;
+            if (2 * room.deceleration * way >= fastest * (fastest + lost)) break;  // from there everything can be braked for
+        }
+        return fastest;
     };
-    double ahead = unbounded, back = unbounded;
-    for (int lap = 0; lap < (mode == mcPeriodic ? 2 : 1); ++lap) {
-        for (std::size_t i = count; i-- > 0;) {
-            seen[i].run.fastest_at_end = ahead;
-            ahead = behind(seen[i].run.fastest, ahead, sections[i].length);
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            seen[i].run.fastest_at_begin = back;
-            back = behind(seen[i].run.fastest, back, sections[i].length);
-        }
+    for (std::size_t i = 0; i < count; ++i) {
+        seen[i].run.fastest_at_end = in_front_of(i, true);
+        seen[i].run.fastest_at_begin = in_front_of(i, false);
     }
     run.track.drive = {.driven = false,
                        .driver = {},

@@ -359,7 +359,7 @@ void PathRun::see_limits() noexcept {
         most = use;
         narrowest_ = in.places[k];
     }
-    if (in.wish.factors.velocity < 1) limiter_ = PathLimiter::override_factor;
+    if (in.player && in.wish.factors.velocity < 1) limiter_ = PathLimiter::override_factor;  // none of what an axis drives (G-072)
     else limiter_ = most >= in_use ? PathLimiter::axis : PathLimiter::command;
 }
 

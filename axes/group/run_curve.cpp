@@ -39,9 +39,7 @@ void RunCurve::forget_before(std::uint32_t part) {
 }
 
 void RunCurve::wish(bool stands, bool own_ramp, const Override& factors, const PathDynamics& ramp) noexcept {
-    ramps_ = stands && !own_ramp;
-    factors_ = factors;
-    ramp_ = ramp;
+    manner_ = {stands && !own_ramp, factors, ramp};
 }
 
 std::size_t RunCurve::index(double s, CurveSide side) const noexcept {
@@ -70,7 +68,7 @@ double RunCurve::tool_rate(std::size_t i, double s, const WayPoint& at) const no
     return std::hypot(moving.velocity[0], moving.velocity[1], moving.velocity[2]);
 }
 
-TimedCurvePoint RunCurve::on(std::size_t i, double s) const noexcept {
+TimedCurvePoint RunCurve::on(std::size_t i, double s, const Manner& manner) const noexcept {
     const PathSection& section = path.sections()[i];
     const WayPoint w = place(i, s);
     TimedCurvePoint p;
@@ -94,19 +92,19 @@ TimedCurvePoint RunCurve::on(std::size_t i, double s) const noexcept {
         if (rate * path_limits.velocity > tool_velocity_) path_limits.velocity = tool_velocity_ / rate;
     }
     const double faster = std::min(said(section.feed.acceleration) * share, least);
-    path_limits.acceleration = faster * factors_.acceleration;
+    path_limits.acceleration = faster * manner.factors.acceleration;
     path_limits.deceleration =
-        std::min(said(ramps_ ? ramp_.deceleration : section.feed.deceleration) * share, least) * factors_.acceleration;
-    path_limits.jerk = std::min(said(ramps_ ? ramp_.jerk : section.feed.jerk) * share, axes.jerk) * factors_.jerk;
+        std::min(said(manner.ramps ? manner.ramp.deceleration : section.feed.deceleration) * share, least) * manner.factors.acceleration;
+    path_limits.jerk = std::min(said(manner.ramps ? manner.ramp.jerk : section.feed.jerk) * share, axes.jerk) * manner.factors.jerk;
     return p;
 }
 
-TimedCurvePoint RunCurve::at(double s, CurveSide side) const noexcept { return on(index(s, side), s); }
+TimedCurvePoint RunCurve::at(double s, CurveSide side) const noexcept { return on(index(s, side), s, manner_); }
 
 AlongLimits RunCurve::along(double s) const noexcept { return along_limits(at(s, CurveSide::before), limits_, 1); }
 
 PathFeed RunCurve::feed_at(double s) const noexcept {
-    const AlongLimits l = along(s);
+    const AlongLimits l = along_limits(on(index(s, CurveSide::before), s, Manner{}), limits_, 1);
     return {l.velocity, l.acceleration, l.deceleration, l.jerk};
 }
 

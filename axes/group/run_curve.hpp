@@ -34,7 +34,7 @@ public:
     [[nodiscard]] WayPoint place(std::size_t index, double s) const noexcept;
     /// What the members and the command leave along the path.
     [[nodiscard]] AlongLimits along(double s) const noexcept;
-    /// The command's dynamics there, with nothing left out: what a transition by velocity asks for.
+    /// The command's dynamics there, with nothing left out, whatever override or ramp of a stop holds now: what a transition by velocity asks for (G-053).
     [[nodiscard]] PathFeed feed_at(double s) const noexcept;
 
     [[nodiscard]] int axes() const noexcept override { return static_cast<int>(limits_.size()); }
@@ -51,7 +51,13 @@ public:
 private:
     [[nodiscard]] std::size_t index(double s, CurveSide side) const noexcept;
     [[nodiscard]] const MemberVector& near(std::size_t index, double s) const noexcept;
-    [[nodiscard]] TimedCurvePoint on(std::size_t index, double s) const noexcept;
+    /// How its motion shall be, beside what its commands say.
+    struct Manner {
+        bool ramps = false;  // by `ramp`, not by the command
+        Override factors{};
+        PathDynamics ramp{};
+    };
+    [[nodiscard]] TimedCurvePoint on(std::size_t index, double s, const Manner& manner) const noexcept;
 
     /// By how much the tool's point moves per length of the path.
     [[nodiscard]] double tool_rate(std::size_t index, double s, const WayPoint& at) const noexcept;
@@ -60,9 +66,7 @@ private:
     const Kinematics* arm_;
     double tool_velocity_;
     std::vector<PathAxisLimits> limits_;
-    bool ramps_ = false;  // by ramp_, not by the command
-    Override factors_{};
-    PathDynamics ramp_{};
+    Manner manner_{};
 };
 
 }  // namespace taktwerk::axes

@@ -28,13 +28,13 @@ struct CornerRun {
     std::vector<JointVector> curve;
 };
 /// (0, 0) to (60, 0) to (60, 60), both with these dynamics.
-CornerRun round_corner(MC_TransitionMode transition, double parameter, PathDynamics dynamics, double override_factor = 1) {
+CornerRun round_corner(MC_TransitionMode transition, double parameter, PathDynamics dynamics, const Override& factors = {}) {
     std::vector<AxisConfig> axes;
     for (const char* name : {"x", "y"})  // that no member limits what the path asks for
         axes.push_back(group_axis(name, {.velocity = 1000, .acceleration = 1e5, .deceleration = 1e5, .jerk = 1e8}));
     GroupRig rig(axes);
     rig.enable();
-    EXPECT_EQ(rig.set(Override{.velocity = override_factor}), ErrorId::none);
+    EXPECT_EQ(rig.set(factors), ErrorId::none);
     auto first = line({60, 0}, 0);
     first.dynamics = dynamics;
     (void)rig.give(first);
@@ -66,11 +66,49 @@ TEST(GroupCorner, StartVelocityBeginsWhereBrakingWould) {
         EXPECT_NEAR(run.nearest, middle_of_right_angle * 5 * factor, 2e-3) << factor;
         EXPECT_GE(run.leaves, 5 * factor - 0.06) << "it is on the line until then; " << factor;
         EXPECT_LE(run.leaves, 5 * factor + 0.06);
-        const auto slow = round_corner(mcTMStartVelocity, factor, dynamics, 0.2);
-        EXPECT_NEAR(slow.nearest, middle_of_right_angle * 5 * factor, 1e-3) << "at every override";
+        for (const Override& factors : {Override{.velocity = 0.2}, Override{.velocity = 0.5, .acceleration = 0.25, .jerk = 0.1}}) {
+            const auto slow = round_corner(mcTMStartVelocity, factor, dynamics, factors);
+            EXPECT_NEAR(slow.nearest, middle_of_right_angle * 5 * factor, 1e-3) << "at every override " << factors.acceleration;
+        }
     }
     // The slower of both decides: 25 u/s do not reach 500 u/s2, 25 sqrt(25/5000) = 1.7678.
     EXPECT_NEAR(round_corner(mcTMStartVelocity, 1, {25, 500, 500, 5000}).nearest, middle_of_right_angle * 25 * std::sqrt(0.005), 1e-3);
+}
+
+// Nor does the ramp of an interruption, in which the later move comes: what is commanded counts.
+TEST(GroupCorner, ASoftInterruptionChangesNoCurve) {
+    for (const auto transition : {mcTMStartVelocity, mcTMConstantVelocity}) {
+        constexpr PathDynamics dynamics{50, 500, 500, 5000};
+        std::vector<double> nearest;
+        for (const bool interrupted : {false, true}) {
+            std::vector<AxisConfig> axes;
+            for (const char* name : {"x", "y"})
+                axes.push_back(group_axis(name, {.velocity = 1000, .acceleration = 1e5, .deceleration = 1e5, .jerk = 1e8}));
+            GroupRig rig(axes);
+            rig.enable();
+            auto first = line({200, 0}, 0);
+            first.dynamics = dynamics;
+            (void)rig.give(first);
+            rig.run(300);
+            if (interrupted) {
+                const auto stop = rig.give(simply(GroupCommandKind::interrupt, {.deceleration = 100, .jerk = 1000}));
+                ASSERT_TRUE(rig.until([&] { return rig.status(stop.id) == CommandStatus::done; }, 5000));
+                ASSERT_LT(rig.point()[0], 60);
+            }
+            const auto second = rig.give(rounded(line({200, 60}, 0), transition, 1, dynamics));
+            rig.run(5);
+            if (interrupted) (void)rig.give(simply(GroupCommandKind::resume));
+            double least = 1e9;
+            ASSERT_TRUE(rig.until(
+                [&] {
+                    least = std::min(least, std::hypot(rig.point()[0] - 200, rig.point()[1]));
+                    return rig.status(second.id) == CommandStatus::done;
+                },
+                200'000));
+            nearest.push_back(least);
+        }
+        EXPECT_NEAR(nearest[0], nearest[1], 2e-3);
+    }
 }
 
 // G-054: a curve that can be passed at the commanded velocity with the commanded acceleration across it: there is no slower place, and the greatest acceleration is 500. A factor of a
@@ -82,8 +120,10 @@ TEST(GroupCorner, ConstantVelocityIsKeptOnItsCurve) {
     EXPECT_NEAR(whole.sharpest, 500, 15);
     const auto half = round_corner(mcTMConstantVelocity, 0.5, dynamics);
     EXPECT_NEAR(whole.nearest / half.nearest, 4, 0.05);
-    const auto slow = round_corner(mcTMConstantVelocity, 1, dynamics, 0.2);
-    EXPECT_NEAR(slow.nearest, whole.nearest, 2e-3) << "at every override";
+    for (const Override& factors : {Override{.velocity = 0.2}, Override{.velocity = 0.5, .acceleration = 0.25, .jerk = 0.1}}) {
+        const auto slow = round_corner(mcTMConstantVelocity, 1, dynamics, factors);
+        EXPECT_NEAR(slow.nearest, whole.nearest, 2e-3) << "at every override " << factors.acceleration;
+    }
 }
 
 // G-060: there and back again there is no curve: it stands where it turns, exactly, and both are done.
@@ -222,6 +262,44 @@ TEST(GroupCorner, AScaraGoesOverFromItsJointsToALine) {
     const auto end = tool_of_scara(rig.point());
     EXPECT_NEAR(end[0], at[0] - 60, 1e-9);
     EXPECT_NEAR(end[1], at[1] + 20, 1e-9);
+}
+
+// G-060 with mcTMStartVelocity: each side where it would brake, in its own unit. A line of the tool at 50 mm/s, and then one joint alone that says no velocity: 360 degrees/s, 3600, 72000 are
+// what its axis has, so braking from that takes v^2/2a + v a/2j = 18 + 9 = 27 degrees, and the curve half of it at a factor of 0.5. Behind it all other joints stand.
+TEST(GroupCorner, WhatAMoveOfTheAxesLeavesOutItsAxesSay) {
+    KinematicsDescription description{.arm = ScaraLengths{.first = 200, .second = 150, .height = 0}};
+    description.joints[0].unit = description.joints[1].unit = description.joints[3].unit = of_a_degree;
+    const AxisLimits turning{.velocity = 360, .acceleration = 3600, .deceleration = 3600, .jerk = 72000};
+    const AxisLimits lifting{.velocity = 200, .acceleration = 2000, .deceleration = 2000, .jerk = 40000};
+    GroupRig rig({group_axis("a1", turning), group_axis("a2", turning), group_axis("z", lifting), group_axis("a4", turning)},
+                 arm_of(description));
+    rig.enable();
+    constexpr JointVector corner{-60, 60, 0, 0}, end{60, 60, 0, 0};
+    const auto go = [&](GroupCommand command) {
+        const auto given = rig.give(command);
+        EXPECT_TRUE(rig.until([&] { return rig.status(given.id) == CommandStatus::done; }, 9000));
+    };
+    go({.kind = GroupCommandKind::direct_absolute, .target = corner});
+    auto away = line_by({-60, 40, 0}, 100);
+    away.frame = mcMCS;
+    go(away);
+    auto back = line_by({60, -40, 0}, 0);
+    back.frame = mcMCS;
+    back.dynamics = {50, 500, 500, 5000};
+    (void)rig.give(back);
+    const auto second =
+        rig.give(rounded({.kind = GroupCommandKind::direct_absolute, .target = end}, mcTMStartVelocity, 0.5, PathDynamics{}));
+    double joins = 0;
+    CornerPassed passed = CornerPassed::none;
+    ASSERT_TRUE(rig.until(
+        [&] {
+            if (rig.status(second.id) == CommandStatus::active) passed = rig.view().corner;
+            if (std::abs(rig.point()[1] - 60) > 1e-6) joins = rig.point()[0] + 60;
+            return rig.status(second.id) == CommandStatus::done;
+        },
+        9000));
+    EXPECT_EQ(passed, CornerPassed::as_asked);
+    EXPECT_NEAR(joins, 13.5, 0.5) << "the last set-point in front of where it joins the joints' line";
 }
 
 // G-060: what became of the curve is shown while the command runs: as it was asked for, smaller, or stood at.
