@@ -1,5 +1,6 @@
 #include "hmi_bridge/gateway/gateway.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -371,8 +372,8 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     for (const auto axis : axes_of(request)) {
         auto& jog = jogs_[axis];
         // What is held already stays what it is until the machine has said what became of another key under the same hand.
-        if (jog.client == request.client && jog.live && !jog.is_of(request)) continue;
-        const bool live = jog.client == request.client && jog.live;
+        const bool live = jog.client == request.client && jog.live && now - jog.renewed <= jog_session;
+        if (live && !jog.is_of(request)) continue;
         jog = {request.client, now, live, request.kind, request.target};
     }
 }
@@ -447,7 +448,7 @@ void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
         const auto found = jogs_.find(axis);
         if (found == jogs_.end() || found->second.client != request.client) continue;
         auto& jog = found->second;
-        if (answer == Answer::accepted) jog = {request.client, jog.renewed, true, request.kind, request.target};
+        if (answer == Answer::accepted) jog = {request.client, std::max(jog.renewed, entry.submitted), true, request.kind, request.target};
         else if (!jog.live || (jog.is_of(request) && answer != Answer::bad_value)) jogs_.erase(found);
     }
 }

@@ -688,6 +688,18 @@ TEST_F(GroupJogTest, ARefusedSecondKeyLeavesTheFirstHeld) {
     EXPECT_THAT(machine.releases, testing::ElementsAre(0, 0, 1));
 }
 
+// A key that nobody let go of, and that is long over, is in nobody's way: the next one is held as any.
+TEST_F(GroupJogTest, AForgottenKeyIsInNobodysWay) {
+    for (const auto later : {Gateway::jog_session + 100ms, Gateway::jog_session - 50ms}) {
+        ASSERT_TRUE(outcome(jog(20, true, client)).accepted());
+        now += later;
+        ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+        now += 100ms;
+        EXPECT_TRUE(outcome(group_jog("x+", 1, false)).accepted());
+        EXPECT_TRUE(outcome(group_jog("", 0, false)).accepted());
+    }
+}
+
 // A renewal with a value that is none changes nothing in the cycle: the hold stands, and letting go is heard. Nor is it told as a number out of its range.
 TEST_F(GroupJogTest, ARenewalWithAnotherDistanceCanStillBeLetGo) {
     ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());

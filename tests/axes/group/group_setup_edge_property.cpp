@@ -84,7 +84,7 @@ private:
 TEST(GroupSetupEdgeProperty, AToolThatWouldHardlyBeTooFastIsNot) {
     const auto arms = every_kind_of_arm();
     double nearest = 0;
-    for (std::size_t i = 0; i < property_cases(2 * arms.size()) && !HasFailure(); ++i) {
+    for (std::size_t i = 0; i < property_cases(arms.size()) && !HasFailure(); ++i) {
         const auto& arm = arms[i % arms.size()];
         if (arm.askew) continue;
         std::mt19937_64 random(31000 + i);
@@ -96,7 +96,7 @@ TEST(GroupSetupEdgeProperty, AToolThatWouldHardlyBeTooFastIsNot) {
         constexpr double probing = 30;
         const double there = jog.fastest(OperatingMode::automatic, direction, probing, 2500);
         if (!(there > 1)) continue;
-        for (const double beyond : {2e-4, 6e-4, 1e-3, 2e-3, 4e-3, 8e-3}) {
+        for (const double beyond : {6e-4, 2e-3, 8e-3}) {
             const double velocity = probing * reduced / there * (1 + beyond);
             if (velocity > 350) continue;
             const double most = jog.fastest(OperatingMode::setup, direction, velocity, static_cast<int>(2500 * probing / velocity));
@@ -104,7 +104,6 @@ TEST(GroupSetupEdgeProperty, AToolThatWouldHardlyBeTooFastIsNot) {
             nearest = std::max(nearest, most);
         }
     }
-    RecordProperty("nearest", std::to_string(nearest));
     EXPECT_GT(nearest, 0.99 * reduced) << "a limit that is never met shows nothing";
 }
 
