@@ -316,8 +316,11 @@ private:
             EXPECT_LE(std::abs(axis.set_position - before.position - t * (axis.set_velocity + before.velocity) / 2),
                       jerk * t * t * t / 4 + 1e-9)
                 << name;
-            if (axis.homed) {
+            // Where its power came back it is where the motor was, which may be a hair outside; from there it goes back alone.
+            if (axis.homed && axis.set_position > before.position) {
                 EXPECT_LE(axis.set_position, limits.position_max + 1e-9) << name;
+            }
+            if (axis.homed && axis.set_position < before.position) {
                 EXPECT_GE(axis.set_position, limits.position_min - 1e-9) << name;
             }
         }
