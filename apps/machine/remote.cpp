@@ -45,7 +45,9 @@ void add_remote_options(CLI::App& sub, RemoteOptions& options) {
 }
 
 int exit_code_of(const Error& error) {
-    if (error.code == "socket.ambiguous" || begins_with(error.code, "request.") || begins_with(error.code, "unit.")) return exit_usage;
+    if (error.code == "socket.ambiguous") return exit_usage;
+    for (const char* usage : {"request.", "unit.", "usage."})
+        if (begins_with(error.code, usage)) return exit_usage;
     if (begins_with(error.code, "socket.") || begins_with(error.code, "state.")) return exit_no_runtime;
     return exit_refused;
 }

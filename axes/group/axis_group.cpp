@@ -238,6 +238,7 @@ void AxisGroup::settle() noexcept {
         }
         if (begun_ && jogs()) {  // at rest, and perhaps for another direction
             begun_ = false;
+            jog_.went(run_.along().position);
             run_.clear();
         }
         if (begun_ || begin_active()) return;
@@ -296,7 +297,7 @@ void AxisGroup::send_waiting() noexcept {
         const bool stored = goes_stored_path(command.kind) || (before != nullptr && goes_stored_path(before->command.kind));
         const bool joins = before != nullptr && goes_a_way(before->command.kind) && command.buffer_mode >= mcBlendingLow && !stored;
         const bool sent = command.kind == GroupCommandKind::jog
-                              ? run_.send(accepted.id, command, place, jog_.dynamics().path, false, &jog_.pressed_at())
+                              ? run_.send(accepted.id, command, place, jog_.dynamics().path, false, &jog_.pressed_at(), jog_.way())
                               : run_.send(accepted.id, command, place, resolved(command.dynamics, view_.default_dynamics), joins);
         if (!sent) return false;
         sent_ = accepted.id;

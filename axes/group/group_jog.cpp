@@ -82,6 +82,7 @@ void GroupJog::turn(JointVector& direction, const JointVector& here) noexcept {
     if (!begun_ || stops()) {
         pressed_at_ = here;
         gone_ = held_.direction;
+        way_ = 0;
     }
     begun_ = true;
     direction = gone_;

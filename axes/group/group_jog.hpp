@@ -46,6 +46,10 @@ public:
     [[nodiscard]] bool released() const noexcept;
     /// What is on the way, once at rest, to be gone next; `here`: where the members stand. `direction` becomes the one to be gone.
     void turn(JointVector& direction, const JointVector& here) noexcept;
+    /// So much of its path is behind it: at rest, before it is asked to go on.
+    void went(double way) noexcept { way_ += way; }
+    /// Since it was pressed in this direction.
+    [[nodiscard]] double way() const noexcept { return way_; }
     [[nodiscard]] const JointVector& pressed_at() const noexcept { return pressed_at_; }
     [[nodiscard]] const JoggingDynamics& dynamics() const noexcept { return dynamics_; }
 
@@ -57,6 +61,7 @@ private:
     JoggingDynamics dynamics_{};
     JointVector gone_{};        // the direction that is on the way
     JointVector pressed_at_{};  // where the members were when that began first
+    double way_ = 0;
     bool begun_ = false;
     Duration silent_{}, lease_{};
 };

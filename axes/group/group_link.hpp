@@ -45,6 +45,7 @@ struct GroupOrder {
     CommandId id = 0;
     GroupCommand command{};              ///< target by rank; dynamics resolved
     MemberVector target{};               ///< of a jog: where the members were when it was pressed
+    double way = 0;                      ///< of a jog: length of its path since then
     CommandPlace place{};                ///< as it was accepted
     bool joins = false;                  ///< may be blended with the one before it
     std::uint32_t line = 0, number = 0;  ///< a piece of a stored path: where in its text

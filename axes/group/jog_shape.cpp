@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "axes/group/room_check.hpp"
 #include "axes/pose_math.hpp"
@@ -167,6 +168,14 @@ PoseRate rate_of(const GroupOrder& move, const Pose& start, const MoveSpace& spa
     return {move.command.dynamics.velocity * (frame * linear), turning * (frame * angular)};
 }
 
+/// rad since it was pressed. Where the tool stands says it but for whole turns; these are what of the path is behind it, which counts a radian as a u.
+double turned_since(const Pose& pressed, const Pose& here, const PoseRate& rate, double way) noexcept {
+    constexpr double turn = 2 * std::numbers::pi;
+    const Eigen::Quaterniond by = orientation_of(here) * orientation_of(pressed).conjugate();
+    const double angular = rate.angular.norm(), shown = 2 * std::atan2(by.vec().dot(rate.angular) / angular, by.w());
+    return shown + turn * std::round((way * angular / std::hypot(rate.linear.norm(), angular) - shown) / turn);
+}
+
 /// Looks along a line of poses until it cannot be gone any further.
 class PoseWalk {
 public:
@@ -275,10 +284,8 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         const double gone = (position_of(here.pose) - position_of(pressed.pose)).norm();
         most = std::min(most, (reach.linear - gone) / linear);
     }
-    if (reach.angular > 0 && angular > 0) {
-        const double gone = orientation_of(here.pose).angularDistance(orientation_of(pressed.pose));
-        most = std::min(most, (reach.angular - gone) / angular);
-    }
+    if (reach.angular > 0 && angular > 0)
+        most = std::min(most, (reach.angular - turned_since(pressed.pose, here.pose, rate, move.way)) / angular);
     if (!(most > 0)) return stands(from, {JogEnd::distance});
     if (linear == 0 && angular == 0) return stands(from);
     if (const auto error = refuse_start(from, space, tool, here.pose); error != ErrorId::none) {

@@ -109,7 +109,7 @@ bool PathRun::fits(const GroupMembers& members) const noexcept {
 }
 
 bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
-                   const JointVector* pressed) noexcept {
+                   const JointVector* pressed, double way) noexcept {
     auto& in = *inside_;
     GroupOrder order;
     order.kind = GroupOrder::Kind::move;
@@ -122,6 +122,7 @@ bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace
         if (pressed != nullptr && command.frame == mcACS) order.command.target[k] = command.target[in.places[k]];
     }
     order.place = place;
+    order.way = way;
     order.joins = joins;
     return in.link.orders.try_push(order);
 }

@@ -46,9 +46,9 @@ public:
     [[nodiscard]] bool fits(const GroupMembers& members) const noexcept;
     /// A way behind those that were sent before. `joins`: may be blended with the one before it. `dynamics`: without 0 where the group has defaults.
     /// False: not now.
-    /// `pressed`: where a jog began, by place.
+    /// `pressed`: where a jog began, by place; `way`: of its path since then.
     bool send(CommandId id, const GroupCommand& command, const CommandPlace& place, const PathDynamics& dynamics, bool joins,
-              const JointVector* pressed = nullptr) noexcept;
+              const JointVector* pressed = nullptr, double way = 0) noexcept;
     /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
     [[nodiscard]] std::optional<PathPlace> verdict(CommandId id) const noexcept;
     /// Of a jog that had nothing to go: why, and of a member's limit whose place it is.

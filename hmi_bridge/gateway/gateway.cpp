@@ -1,5 +1,6 @@
 #include "hmi_bridge/gateway/gateway.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -368,7 +369,13 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     client.wrote_values = client.wrote_values || (request.kind == CommandKind::set_value && request.press);
     client.forces = client.forces || request.kind == CommandKind::force;
     if (!is_held(request.kind)) return;
-    for (const auto axis : axes_of(request)) jogs_[axis] = {request.client, now};
+    for (const auto axis : axes_of(request)) {
+        auto& jog = jogs_[axis];
+        // What is held already stays what it is until the machine has said what became of another key under the same hand.
+        const bool live = jog.client == request.client && jog.live && now - jog.renewed <= jog_session;
+        if (live && !jog.is_of(request)) continue;
+        jog = {request.client, now, live, request.kind, request.target};
+    }
 }
 
 std::vector<std::uint16_t> Gateway::axes_of(const CommandRequest& request) const {
@@ -432,11 +439,17 @@ void Gateway::settle_levels(Instant now) {
     }
 }
 
+// A refusal ends what it is of, and no other key that the same client holds on one of these axes: who lets go of that is heard. A value that is none
+// (bad_value) changes nothing in the cycle.
 void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
-    if (!is_held(entry.request.kind) || answer == Answer::accepted) return;
-    for (const auto axis : axes_of(entry.request)) {
-        const auto jog = jogs_.find(axis);
-        if (jog != jogs_.end() && jog->second.client == entry.request.client) jogs_.erase(jog);
+    const auto& request = entry.request;
+    if (!is_held(request.kind)) return;
+    for (const auto axis : axes_of(request)) {
+        const auto found = jogs_.find(axis);
+        if (found == jogs_.end() || found->second.client != request.client) continue;
+        auto& jog = found->second;
+        if (answer == Answer::accepted) jog = {request.client, std::max(jog.renewed, entry.submitted), true, request.kind, request.target};
+        else if (!jog.live || (jog.is_of(request) && answer != Answer::bad_value)) jogs_.erase(found);
     }
 }
 

@@ -128,6 +128,10 @@ private:
     struct JogSession {
         ClientId client = 0;
         Instant renewed{};
+        bool live = false;  ///< the machine has accepted it, under this name:
+        CommandKind kind = CommandKind::none;
+        std::string target{};
+        [[nodiscard]] bool is_of(const CommandRequest& request) const { return kind == request.kind && target == request.target; }
     };
     struct Refusal {
         runtime::Answer answer;

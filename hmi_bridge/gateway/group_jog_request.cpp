@@ -33,6 +33,19 @@ std::vector<std::string> slots_of(axes::MC_CoordSystem frame, const runtime::Mac
     return names;
 }
 
+/// Where a word that is no direction of this frame is one. Empty: nowhere.
+std::string other_frame(std::string_view name, axes::MC_CoordSystem frame, const runtime::MachineLayout& layout,
+                        const runtime::MachineLayout::GroupInfo& group) {
+    const auto known = [&](axes::MC_CoordSystem of) {
+        const auto slots = slots_of(of, layout, group);
+        return std::find(slots.begin(), slots.end(), name) != slots.end();
+    };
+    if (frame != axes::mcACS && known(axes::mcACS)) return fmt::format("{} is an axis of it: those are jogged in frame acs.", quoted(name));
+    if (frame == axes::mcACS && group.arm && known(axes::mcMCS))
+        return fmt::format("{} is a direction of its tool: those are of a frame as mcs (the machine) or tcs (the tool).", quoted(name));
+    return {};
+}
+
 }  // namespace
 
 Result<runtime::GroupJogOrder> read_group_jog(const GroupJogRequest& request, const runtime::MachineLayout& layout, std::uint16_t group) {
@@ -60,6 +73,8 @@ Result<runtime::GroupJogOrder> read_group_jog(const GroupJogRequest& request, co
         const char sign = word.back();
         const auto slot = std::find(slots.begin(), slots.end(), name);
         if ((sign != '+' && sign != '-') || slot == slots.end()) {
+            if (const auto elsewhere = other_frame(name, frame->second, layout, info); !elsewhere.empty())
+                return bad(fmt::format("{} is no direction of it in {}", quoted(word), request.frame), elsewhere);
             const auto near = nearest_name(name.substr(0, longest_word), slots);
             return bad(fmt::format("{} is no direction of it in {}", quoted(word), request.frame),
                        near.empty() ? fmt::format("Give one or more of {}, each with + or - behind it: \"{}+\".", fmt::join(slots, ", "),

@@ -97,7 +97,11 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
             for (auto hold = holds_.lower_bound(axis); hold != holds_.end() && hold->first == axis; ++hold)
                 if (hold->second.connection == connection) hold->second.renewed = now_;
             if (urgent->press && !guests_[connection].in_reserve) {
-                std::erase_if(holds_, [&](const auto& h) { return h.first == axis && h.second.connection == connection; });
+                // The first one stays: should this press be refused, what was held before it is held still. Those between are no more.
+                bool first = true;
+                std::erase_if(holds_, [&](const auto& h) {
+                    return h.first == axis && h.second.connection == connection && !std::exchange(first, false);
+                });
                 holds_.insert({axis, {connection, urgent->id, now_}});
             }
         }

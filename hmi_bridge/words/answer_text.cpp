@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
 #include "hmi_bridge/words/words.hpp"
 
@@ -144,6 +145,11 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             error.remedy = "Look at the names the machine has (taktwerk monitor), and at `disabled:` in the configuration.";
             break;
         case Answer::bad_value:
+            if (kind == CommandKind::group_jog) {  // of numbers that are none the gateway has told already
+                error.what = "a renewal says another frame or distance than its press";
+                error.remedy = "Let go, and press again with the other one.";
+                break;
+            }
             error.what = !of_a_point                  ? "the value is outside its range"
                          : kind == CommandKind::force ? "the value is beyond what its channel has"
                                                       : "the value is beyond what its channel gives";
@@ -201,6 +207,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             } else if (const auto* text = axes::find_error(answer.error); text && answer.error != axes::ErrorId::none) {
                 error.what = fmt::format("{} ({}): {}", text->english.text, text->name, text->english.cause);
                 error.remedy = fmt::format("{}.", text->english.remedy);
+            } else if (const auto* alarm = find_alarm(axes::axis_alarms, static_cast<AlarmId>(answer.error))) {
+                error.what = fmt::format("{} alarm '{}' has ended it: {}", is_of_a_group(kind) ? "one of its axes stopped, and its" : "its",
+                                         alarm->name, alarm->cause);
+                error.remedy = fmt::format("{}. `taktwerk monitor` shows the alarm.", alarm->remedy);
             } else {
                 error.what = fmt::format("the axis refused it with error {}", static_cast<unsigned>(answer.error));
                 error.remedy = "See the alarms of the axis.";

@@ -49,6 +49,15 @@ axes::Owner GroupDesk::owner_of(std::size_t group) const noexcept {
     return axes::Owner::none;
 }
 
+axes::Owner GroupDesk::owner_against(std::size_t group, axes::Owner owner) const noexcept {
+    for (const auto member : body_.axis_groups[group].view().members) {
+        if (!member.valid()) continue;
+        const auto other = body_.axes[member.index].view().owner;
+        if (other != axes::Owner::none && other != owner) return other;
+    }
+    return owner_of(group);
+}
+
 Verdict GroupDesk::submit(std::size_t group, GroupCommandKind kind, axes::Owner owner) noexcept {
     axes::GroupCommand command;
     command.kind = kind;

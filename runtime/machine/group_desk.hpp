@@ -29,6 +29,8 @@ public:
     [[nodiscard]] std::uint64_t newest_stop(std::size_t group) const noexcept;
     /// Whose the members are; none: it has none.
     [[nodiscard]] axes::Owner owner_of(std::size_t group) const noexcept;
+    /// Whose axis of it keeps `owner` from moving it; nobody's: as owner_of().
+    [[nodiscard]] axes::Owner owner_against(std::size_t group, axes::Owner owner) const noexcept;
 
 private:
     [[nodiscard]] axes::GroupRef ref(std::size_t group) const noexcept { return {static_cast<std::uint16_t>(group)}; }

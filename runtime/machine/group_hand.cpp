@@ -161,8 +161,10 @@ void GroupHand::set_mode(axes::OperatingMode mode) noexcept {
         group.set_mode(mode);
         held_[i].id = 0;
     }
+    // One that waits already goes on waiting, for this mode: what brings its group to rest is still a person's.
     for (std::size_t i = 0; i < body_.axes.size(); ++i) {
-        waits_[i] = by_hand && body_.axis_groups.leader_of({static_cast<std::uint16_t>(i)}) != nullptr ? 1 : 0;
+        const bool led = body_.axis_groups.leader_of({static_cast<std::uint16_t>(i)}) != nullptr;
+        waits_[i] = led && (by_hand || waits_[i] != 0) ? 1 : 0;
         if (waits_[i] == 0) body_.axes[i].set_mode(mode);
     }
 }

@@ -100,7 +100,8 @@ void OperatorDesk::answer(const OperatorCommand& command, Verdict verdict) noexc
         reply.holder = body_.axes[command.axis].view().holder;
         if (verdict.answer == Answer::accepted) tell_limit(command, reply);
     }
-    if (is_of_a_group(command.action) && command.index < body_.axis_groups.size()) reply.owner = groups_.owner_of(command.index);
+    if (is_of_a_group(command.action) && command.index < body_.axis_groups.size())
+        reply.owner = groups_.owner_against(command.index, command.owner);
     if (verdict.answer != Answer::accepted) ++body_.statistics.commands_refused;
     answers_.try_push(reply);  // a full ring means nobody reads: the client's own time-out tells it
 }

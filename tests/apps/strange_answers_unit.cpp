@@ -19,9 +19,11 @@ namespace taktwerk::apps {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-/// One client after the other; `answer`: to each request, without "id" and "ok".
+/// One client after the other; `answer`: to each request, without "id"; "ok" is true where it does not say otherwise.
 class StrangeRuntime {
 public:
     using Answer = std::function<json(const json&)>;
@@ -67,7 +69,7 @@ private:
                     const auto request = json::parse(text.substr(0, end));
                     auto answer = answer_(request);
                     answer["id"] = request["id"];
-                    answer["ok"] = true;
+                    if (!answer.contains("ok")) answer["ok"] = true;
                     const auto line = answer.dump() + "\n";
                     if (::send(client, line.data(), line.size(), MSG_NOSIGNAL) < 0) break;
                 }
@@ -133,6 +135,87 @@ TEST(StrangeAnswers, OfEverythingElseAreTold) {
         {"drive", "params", "x"},
     };
     for (const auto& command : commands) expect_told(answer, command);
+}
+
+// --- a jog of a group, as the machine tells of it -----------------------------------------------------------------------------------
+
+/// A machine with a group "arm" of one axis in degrees; `jogged`: to the renewals, from 1 on. It stands from the first renewal on.
+StrangeRuntime::Answer with_an_arm(std::function<json(int)> jogged, const std::string& limiter = "command") {
+    return [jogged = std::move(jogged), limiter, renewals = 0](const json& request) mutable -> json {
+        if (request["cmd"] == "layout")
+            return {{"layout", {{"axes", {{{"name", "j1"}, {"unit", "deg"}}}}, {"groups", {{{"name", "arm"}, {"unit", "mm"}}}}}}};
+        if (request["cmd"] == "state") {
+            const json group{{"name", "arm"},         {"state", renewals > 0 ? "GroupStandby" : "GroupMoving"},
+                             {"tool_known", true},    {"tool_actual", {1, 2, 3, 0, 0, 0}},
+                             {"unit", "mm"},          {"limiter", limiter},
+                             {"limiting_axis", "j1"}, {"path_velocity", 50},
+                             {"path_acceleration", 0}};
+            return {{"state", {{"groups", {group}}}}};
+        }
+        const bool renews = request["velocity"] != 0 && !request.contains("press");
+        return renews ? jogged(++renewals) : json::object();
+    };
+}
+json refused_jog(int) {
+    return {{"ok", false},
+            {"error", {{"code", "command.refused_by_axis"}, {"subject", "group arm"}, {"what", "a limit"}, {"remedy", "jog back"}}}};
+}
+Outcome jog_arm(const StrangeRuntime& runtime, std::vector<std::string> more) {
+    std::vector<std::string> words{"jog", "arm"};
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"-s", runtime.path()});
+    return in_process(words);
+}
+
+// Where it stands before all of the distance was gone something else has stopped it, and the next renewal says what: that is no success.
+TEST(GroupJogCommand, ADistanceIsGoneOnlyIfTheMachineSaysSoWhereItStands) {
+    const StrangeRuntime limit(with_an_arm([](int n) { return n == 1 ? json::object() : refused_jog(n); }));
+    const auto stopped = jog_arm(limit, {"x+", "--velocity", "20%", "--distance", "10mm"});
+    EXPECT_EQ(stopped.code, exit_refused) << stopped.out;
+    EXPECT_THAT(stopped.err, HasSubstr("a limit"));
+    const StrangeRuntime sound(with_an_arm([](int) { return json::object(); }));
+    const auto gone = jog_arm(sound, {"x+", "--velocity", "20%", "--distance", "10mm"});
+    EXPECT_EQ(gone.code, exit_ok) << gone.err;
+    EXPECT_THAT(gone.out, HasSubstr("arm: stands at X 1.000"));
+    EXPECT_THAT(gone.out, Not(HasSubstr("let go before")));
+}
+
+TEST(GroupJogCommand, ATimeThatEndsBeforeTheDistanceIsSaid) {
+    const StrangeRuntime slow([moves = with_an_arm({}), stands = with_an_arm([](int) { return json::object(); }),
+                               released = false](const json& request) mutable -> json {
+        if (request["cmd"] != "group_jog") return released ? stands(request) : moves(request);
+        released = released || request["velocity"] == 0;
+        if (released) (void)stands({{"cmd", "group_jog"}, {"velocity", 1}});
+        return json::object();
+    });
+    const auto told = jog_arm(slow, {"x+", "--velocity", "20%", "--distance", "10mm", "--for", "100ms"});
+    EXPECT_EQ(told.code, exit_ok) << told.err;
+    EXPECT_THAT(told.out, HasSubstr("let go before all of 10mm was gone"));
+}
+
+// In acs all of what the mode leaves an axis is what 100 % asks for; in the machine's directions it is less.
+TEST(GroupJogCommand, AnAxisThatGoesAsAskedIsNotCalledSlower) {
+    for (const auto& [frame, direction, slower] : {std::tuple{"acs", "j1+", false}, std::tuple{"mcs", "x+", true}}) {
+        const StrangeRuntime runtime(with_an_arm([](int) { return json::object(); }, "axis_limit"));
+        const auto told = jog_arm(runtime, {direction, "--frame", frame, "--velocity", "100%", "--for", "100ms"});
+        EXPECT_EQ(told.code, exit_ok) << told.err;
+        EXPECT_EQ(told.out.find("slower than asked") != std::string::npos, slower) << frame << told.out;
+    }
+}
+
+// What is written wrongly is told so by the exit code of wrong arguments, before anything is asked of the machine; a fifth is no 0.2 %.
+TEST(GroupJogCommand, WrongArgumentsAreNoRefusalOfTheMachine) {
+    const StrangeRuntime runtime(with_an_arm(refused_jog));
+    for (const auto& words : std::vector<std::vector<std::string>>{{"x+", "--velocity", "200%"},
+                                                                   {"x+", "--velocity", "-20%"},
+                                                                   {"x+", "--velocity", "20%", "--distance", "-5mm"},
+                                                                   {"x+", "--velocity", "20%", "--distance", "5deg"},
+                                                                   {"--velocity", "20%"}})
+        EXPECT_EQ(jog_arm(runtime, words).code, exit_usage) << words.back();
+    const auto fifth = jog_arm(runtime, {"x+", "--velocity", "0.2"});
+    EXPECT_EQ(fifth.code, exit_usage);
+    EXPECT_THAT(fifth.err, AllOf(HasSubstr("per cent"), HasSubstr("`20%`"), HasSubstr("`0.2%`")));
+    EXPECT_EQ(jog_arm(runtime, {"x+", "--velocity", "0.2%"}).code, exit_refused) << "so slow it was meant";
 }
 
 }  // namespace

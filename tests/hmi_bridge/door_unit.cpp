@@ -449,6 +449,22 @@ TEST_F(DoorTest, AGroupThatIsLetGoOrLostIsALevelOfEachOfItsAxes) {
     EXPECT_FALSE(desk.arrivals[2].level_raised) << "the other one has raised nothing";
 }
 
+// A press that is refused beside one that is held: that one is held still, and its release is a level.
+TEST_F(DoorTest, ARefusedSecondPressLeavesTheFirstHeld) {
+    const auto holder = call();
+    holder.say(press_group);
+    step();
+    holder.say("{\"id\":2,\"cmd\":\"jog\",\"axis\":\"x\",\"velocity\":5,\"press\":true}\n");
+    step();
+    door->pass_on(desk, now);
+    ASSERT_THAT(desk.arrivals, SizeIs(2));
+    door->answer(desk.newest, R"({"id":2,"ok":false})", "2");
+    step();
+    holder.say("{\"id\":9,\"cmd\":\"group_jog\",\"group\":\"table\",\"velocity\":0}\n");
+    step();
+    EXPECT_THAT(machine.releases, ElementsAre(0, 1));
+}
+
 TEST_F(DoorTest, WhoIsLostWhileItHoldsAGroupLetsGoOfAllOfIt) {
     auto holder = call();
     holder.say(press_group);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "axes/axis/alarms.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 #include "tests/patience.hpp"
 
@@ -641,6 +642,17 @@ TEST_F(GroupJogTest, ARefusedRenewalEndsTheHold) {
     EXPECT_TRUE(outcome(group_jog("x-", 1, true, other)).accepted());
 }
 
+// What has ended it may be an alarm of an axis: that is named with cause and remedy, and is no number.
+TEST_F(GroupJogTest, AnAlarmThatEndedItIsNamed) {
+    ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+    const auto fault = static_cast<axes::ErrorId>(axes::id(axes::AxisAlarm::drive_fault));
+    const auto ended = outcome(group_jog("x+", 1, false), Answer::refused_by_axis, fault);
+    EXPECT_THAT(ended.error.what, HasSubstr("alarm 'drive_fault' has ended it: See the drive's alarm list"));
+    EXPECT_THAT(ended.error.remedy, HasSubstr("Remove the cause named by the drive's alarm text, then reset"));
+    ASSERT_TRUE(outcome(jog(20, true, client)).accepted());
+    EXPECT_THAT(outcome(jog(20, false, client), Answer::refused_by_axis, fault).error.what, HasSubstr("its alarm 'drive_fault'"));
+}
+
 // Nobody is known over LCM, and nobody is missed: no jog of a group from there. It lives as short as a jog of an axis.
 TEST_F(GroupJogTest, NotOverLcmAndNotForLong) {
     const auto lcm = gateway.open(Source::lcm, "LCM", Rights::operating);
@@ -659,6 +671,44 @@ TEST_F(GroupJogTest, NotOverLcmAndNotForLong) {
     EXPECT_EQ(outcome(group_jog("x+", 0, true)).answer, Answer::bad_value) << "a press at 0";
 }
 
+// A second key under the same hand that is refused ends nothing: the first one is renewed and let go as before, by whichever name it was pressed.
+TEST_F(GroupJogTest, ARefusedSecondKeyLeavesTheFirstHeld) {
+    ASSERT_TRUE(outcome(jog(20, true, client)).accepted());
+    EXPECT_FALSE(outcome(group_jog("y+", 1, true), Answer::refused_by_axis, axes::ErrorId::not_at_standstill).accepted());
+    EXPECT_TRUE(outcome(jog(20, false, client)).accepted()) << "its renewal";
+    const auto other = gateway.open(Source::socket, "panel B", Rights::operating);
+    EXPECT_EQ(outcome(jog(20, true, other)).answer, Answer::no_control) << "and nobody else has it";
+    EXPECT_TRUE(outcome(jog(0, false, client)).accepted());
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0));
+
+    ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+    EXPECT_FALSE(outcome(jog(20, true, client), Answer::refused_by_axis, axes::ErrorId::axis_grouped).accepted());
+    EXPECT_TRUE(outcome(group_jog("x+", 1, false)).accepted());
+    EXPECT_TRUE(outcome(group_jog("", 0, false)).accepted());
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0, 0, 1));
+}
+
+// A key that nobody let go of, and that is long over, is in nobody's way: the next one is held as any.
+TEST_F(GroupJogTest, AForgottenKeyIsInNobodysWay) {
+    for (const auto later : {Gateway::jog_session + 100ms, Gateway::jog_session - 50ms}) {
+        ASSERT_TRUE(outcome(jog(20, true, client)).accepted());
+        now += later;
+        ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+        now += 100ms;
+        EXPECT_TRUE(outcome(group_jog("x+", 1, false)).accepted());
+        EXPECT_TRUE(outcome(group_jog("", 0, false)).accepted());
+    }
+}
+
+// A renewal with a value that is none changes nothing in the cycle: the hold stands, and letting go is heard. Nor is it told as a number out of its range.
+TEST_F(GroupJogTest, ARenewalWithAnotherDistanceCanStillBeLetGo) {
+    ASSERT_TRUE(outcome(group_jog("x+", 1, true)).accepted());
+    const auto other = outcome(group_jog("x+", 1, false), Answer::bad_value);
+    EXPECT_THAT(other.error.what, HasSubstr("another frame or distance"));
+    EXPECT_TRUE(outcome(group_jog("", 0, false)).accepted());
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0, 1));
+}
+
 // A group without an arm has its axes alone, and one whose axes a program gives nobody can hold as a whole.
 TEST_F(GroupJogTest, WhatAGroupCannotDoIsSaid) {
     machine.its_layout.groups[0].arm = false;
@@ -668,6 +718,12 @@ TEST_F(GroupJogTest, WhatAGroupCannotDoIsSaid) {
     machine.its_layout.groups[0].arm = true;
     EXPECT_THAT(outcome(group_jog("rz+", 1, true)).error.what, HasSubstr("does not turn its tool"));
     EXPECT_THAT(outcome(group_jog("xx+", 1, true)).error.remedy, HasSubstr("\"x+\""));
+    // An axis' name where directions of the tool are asked for, and the other way round: which frame it wants is said.
+    machine.its_layout.axes[1].name = "lift";
+    EXPECT_THAT(outcome(group_jog("lift+", 1, true)).error.remedy, HasSubstr("\"lift\" is an axis of it: those are jogged in frame acs"));
+    auto in_axes = group_jog("z+", 1, true);
+    in_axes.group_jog.frame = "acs";
+    EXPECT_THAT(outcome(in_axes).error.remedy, HasSubstr("\"z\" is a direction of its tool"));
     machine.its_layout.groups[0].members.clear();
     const auto empty = outcome(group_jog("x+", 1, true));
     EXPECT_EQ(empty.answer, Answer::not_possible_now);
