@@ -343,7 +343,7 @@ private:
 
 TEST(GroupWorkspaceProperty, NoBeltCarriesTheToolThroughAWall) {
     int ended = 0, gone = 0;
-    for (std::size_t i = 0; i < property_cases(60) && !HasFailure(); ++i) {
+    for (std::size_t i = 0; i < property_cases(40) && !HasFailure(); ++i) {
         SCOPED_TRACE(::testing::Message() << "belt " << i);
         Carried carried(31000 + i);
         const auto error = carried.go();
