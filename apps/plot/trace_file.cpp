@@ -120,6 +120,16 @@ Result<std::vector<Column*>> targets(Trace& trace, const std::vector<Heading>& c
     return out;
 }
 
+/// Nobody plans the jerk of an axis that is led (by a group, a master): its set-points have what their accelerations are apart.
+void find_jerk(AxisTrace& axis, const std::vector<double>& time) {
+    constexpr auto led = static_cast<double>(axes::AxisState::SynchronizedMotion);
+    for (std::size_t i = 1; i < time.size(); ++i) {
+        const double step = time[i] - time[i - 1];
+        if (axis.state[i] == led && axis.state[i - 1] == led && axis.set_jerk[i] == 0 && step > 0)
+            axis.set_jerk[i] = (axis.set_acceleration[i] - axis.set_acceleration[i - 1]) / step;
+    }
+}
+
 /// What places and colours the rest of the picture.
 std::vector<const Column*> frame_of(const Trace& trace) {
     std::vector<const Column*> out{&trace.time_s, &trace.emergency_stop};
@@ -206,6 +216,7 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
                          "Record the trace again; this file was changed or damaged.");
         last = t;
     }
+    for (auto& axis : trace.axes) find_jerk(axis, trace.time_s);
     return trace;
 }
 

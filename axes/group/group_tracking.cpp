@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "axes/group/braking_way.hpp"
 #include "axes/group/group_equipment.hpp"
 #include "axes/group/leading_axis.hpp"
 #include "axes/group/member_limits.hpp"
@@ -72,6 +73,7 @@ struct GroupTracking::Inside {
     std::shared_ptr<const Kinematics> arm;
     std::shared_ptr<const Workspace> workspace;
     double out = 0;  // by how much the tool's point is where it may not be; only less from then on
+    Pose watched{};  // whose point that is, from the flange
     struct Product {
         std::uint32_t serial = 0;
         MasterTrack master;
@@ -309,21 +311,21 @@ void GroupTracking::follow(double period, Duration cycle) noexcept {
     phase_ = Phase::resting;
 }
 
-/// Where it is, and where it would come to rest if each member braked now.
-bool GroupTracking::in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members) noexcept {
+/// Where it is, and all of the way on which it would come to rest if each member braked now.
+bool GroupTracking::in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members, double period) noexcept {
     auto& in = *inside_;
     if (in.workspace == nullptr) return true;
-    Joints here{}, rest{};
-    for (std::size_t i = 0; i < in.arm->joint_count(); ++i) {
-        here[i] = rest[i] = next[i].position;
-        if (members.has(i)) rest[i] = rest_of(next[i], path_limits_of(members.axis(i)));
-    }
-    const auto room = [&](const Joints& at) {
+    const auto room = [&](const std::array<MotionState, most_members>& states) {
+        Joints at{};
+        for (std::size_t i = 0; i < in.arm->joint_count(); ++i) at[i] = states[i].position;
         const auto point = in.arm->forward(at, in.still.tool).pose.position;
         return in.workspace->clearance(point) + wall_digits(point);
     };
-    const double now = room(here);
-    const bool good = now >= std::min(0.0, in.out) && room(rest) >= std::min(now, 0.0);
+    if (std::isinf(in.out) || in.watched != in.still.tool) in.out = std::min(0.0, room(states_));  // where it stood
+    in.watched = in.still.tool;
+    const double now = room(next);
+    const bool good = now >= std::min(0.0, in.out) &&
+                      brakes_inside(next, members, period, {in.arm.get(), in.workspace.get(), in.still.tool, std::min(now, 0.0)});
     in.out = std::max(in.out, std::min(now, 0.0));
     return good;
 }
@@ -358,7 +360,7 @@ ErrorId GroupTracking::step(const ToolMotion* still, const GroupMembers& members
             (next[i].velocity == 0 || (rests <= bounds.high && rests >= bounds.low));
         if (!inside) return ErrorId::frame_limit;
     }
-    if (!in_workspace(next, members)) return ErrorId::frame_limit;
+    if (!in_workspace(next, members, to_seconds(period))) return ErrorId::frame_limit;
     states_ = next;
     for (std::size_t i = 0; i < max_joints; ++i) in.q[i] = stand.axes[i];
     return ErrorId::none;

@@ -85,7 +85,7 @@ private:
     [[nodiscard]] MotionState come_nearer(const MotionState& goal, Duration cycle) noexcept;
     [[nodiscard]] bool jumps(const MotionState& next, double period) const noexcept;
     void see_room(const GroupMembers& members) noexcept;
-    [[nodiscard]] bool in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members) noexcept;
+    [[nodiscard]] bool in_workspace(const std::array<MotionState, most_members>& next, const GroupMembers& members, double period) noexcept;
 
     std::span<Axis> axes_;
     std::unique_ptr<Inside> inside_;

@@ -301,7 +301,7 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
             const Eigen::Vector3d p = position_of(here.pose) + t * rate.linear;
             return std::array<double, 3>{p.x(), p.y(), p.z()};
         };
-        const double inside = inside_until(*space.workspace, time, at, [&](double) { return linear; });
+        const double inside = jog_inside_until(*space.workspace, time, at, [&](double) { return linear; });
         if (inside < time) why = {JogEnd::workspace};
         time = inside;
     }

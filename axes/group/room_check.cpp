@@ -20,7 +20,7 @@ double inside_until(double most, const MemberVector& from, const MemberVector& r
         return joints_of(q);
     };
     if (!space.arm->forward(at(0), tool).miss.ok()) return most;  // of axes that have no pose nobody knows where the tool is
-    return inside_until(
+    return jog_inside_until(
         *space.workspace, most, [&](double t) { return space.arm->forward(at(t), tool).pose.position; },
         [&](double t) { return swing * speed_of(space.arm->moving(at(t), joints_of(rate), tool).velocity); });
 }

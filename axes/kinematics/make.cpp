@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include <Eigen/LU>
+
 #include "axes/kinematics/kinematics.hpp"
 
 namespace taktwerk::axes {
@@ -48,11 +50,14 @@ struct Checks {
                                     {"drop", l.drop, false}});
     }
     std::optional<Error> operator()(const RotaryDeltaLengths& l) const {
-        return check_lengths(kind, {{"base_radius", l.base_radius, true},
-                                    {"platform_radius", l.platform_radius, true},
-                                    {"upper", l.upper, true},
-                                    {"rod", l.rod, true},
-                                    {"first_arm_at", l.first_arm_at, false}});
+        if (auto error = check_lengths(kind, {{"base_radius", l.base_radius, true},
+                                              {"platform_radius", l.platform_radius, true},
+                                              {"upper", l.upper, true},
+                                              {"rod", l.rod, true},
+                                              {"first_arm_at", l.first_arm_at, false}}))
+            return error;
+        return check_lengths(kind, {{"rod and upper arm less both radii's difference",
+                                     l.rod + l.upper - std::abs(l.base_radius - l.platform_radius), true}});
     }
     std::optional<Error> operator()(const LinearDeltaLengths& l) const {
         if (auto error = check_lengths(kind, {{"base_radius", l.base_radius, true},
@@ -119,6 +124,16 @@ bool couples_only_joints(const Coupling& c, std::size_t joints) {
     return true;
 }
 
+/// Whether the axes say where the joints are, and not only just: of gears that nearly cancel the rest would be rounding. Its determinant, which no unit
+/// changes; 1 where each axis is a joint.
+bool tells_joints(const Coupling& c) noexcept {
+    constexpr double least = 1e-6;
+    JointMatrix m;
+    for (Eigen::Index i = 0; i < 6; ++i)
+        for (Eigen::Index k = 0; k < 6; ++k) m(i, k) = c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+    return std::abs(m.determinant()) >= least;
+}
+
 /// The belt's, and then what the description says on top: axes = given * belt * joints.
 Coupling with_belt(const Coupling& given) {
     Coupling c = given;
@@ -172,7 +187,7 @@ Result<Kinematics> Kinematics::make(const KinematicsDescription& description) {
     for (std::size_t i = 0; i < k.joint_count(); ++i)
         if (auto error = check_joint(kind, i + 1, description.joints[i])) return *error;
     k.map_ = AxisMap{description.joints, coupling};
-    if (!k.map_.sound() || !couples_only_joints(description.coupling, k.joint_count()))
+    if (!k.map_.sound() || !tells_joints(description.coupling) || !couples_only_joints(description.coupling, k.joint_count()))
         return Error{"kinematics.coupling", std::string(kind), "the matrix has no inverse, or couples axes that this arm does not have",
                      "Give in row i how far axis i moves for one unit of each joint"};
     const double length = orientation_of(description.base).norm();

@@ -7,6 +7,7 @@
 
 #include "config/machine_file/group_quantities.hpp"
 #include "config/reading/codecs.hpp"
+#include "core/nearest_name.hpp"
 
 namespace taktwerk::config {
 namespace {
@@ -131,7 +132,12 @@ Table<JointEntry> joint_table() {
                    {},
                    {}};
     table.before = [](Reader& reader, const Node&, J& joint) {
-        const auto unit = reader.units_of_axes.find(joint.axis);
+        auto unit = reader.units_of_axes.find(joint.axis);
+        if (unit == reader.units_of_axes.end()) {  // told as no member; its numbers are as the one's that was meant
+            std::vector<std::string> names;
+            for (const auto& [name, its_unit] : reader.units_of_axes) names.push_back(name);
+            unit = reader.units_of_axes.find(nearest_name(joint.axis, names));
+        }
         if (unit != reader.units_of_axes.end()) reader.axis_unit = unit->second;
     };
     return table;

@@ -113,11 +113,10 @@ std::vector<Field<GroupEntry>> equipment_fields() {
 void equip(Reader& reader, const Node& node, GroupEntry& entry) {
     auto& equipment = entry.group.equipment;
     if (node.find("kinematics") == nullptr)
-        for (const char* key : {"frames", "tools", "workspace"})
+        for (const char* key : {"frames", "tools", "workspace", "setup_velocity"})
             if (const Node* own = node.find(key))
-                reader.problem(own->at, "config.group_frames",
-                               "the group has `" + std::string(key) + "` and no arm that they could belong to",
-                               "write `kinematics:`, or leave them out");
+                reader.problem(own->at, "config.group_frames", "the group has `" + std::string(key) + "` and no arm that could have it",
+                               "write `kinematics:`, or leave it out");
     check_numbers(reader, node, "tools", entry.tools);
     check_numbers(reader, node, "payloads", entry.payloads);
     for (const auto& tool : entry.tools) (void)equipment.tools.define(tool.number, {tool.frame, tool.body});

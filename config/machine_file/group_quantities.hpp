@@ -1,6 +1,7 @@
 #pragma once
 // How lengths and angles of a group are written: in its own unit, and in any unit of angles as rad.
 
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 #include <string>
@@ -16,15 +17,39 @@ namespace taktwerk::config {
     Codec<double> c = quantity(Dimension::angle);
     c.read = [read = c.read](Reader& reader, const Node& node, double& out) {
         double degrees = 0;
-        const bool good = read(reader, node, degrees);
-        if (good) out = degrees * degree;
-        return good;
+        if (!read(reader, node, degrees)) return false;
+        if (std::abs(degrees) > 360) {
+            reader.problem(node.at, "config.out_of_range",
+                           "`" + reader.path() + "` is " + show_number(degrees) + " deg, more than a whole turn",
+                           "write it within a turn; 90 deg are not 90 rad");
+            return false;
+        }
+        out = degrees * degree;
+        return true;
     };
     c.show = [](const double& rad) { return show_number(rad / degree) + " deg"; };
     return c;
 }
 
-[[nodiscard]] inline Codec<double> length_of_group() { return quantity(Dimension::position); }
+/// Beyond it arms do not compute (KinematicFault::not_finite), in any unit.
+inline constexpr double longest_length = 1e12;
+
+/// Whether a length of that size means anything; else it is told.
+[[nodiscard]] inline bool check_size(Reader& reader, const Node& node, double length) {
+    if (std::abs(length) <= longest_length) return true;
+    reader.problem(node.at, "config.out_of_range",
+                   "`" + reader.path() + "` is " + show_number(length) + " " + reader.axis_unit + ", longer than anything",
+                   "write it as the drawing has it, with its unit");
+    return false;
+}
+
+[[nodiscard]] inline Codec<double> length_of_group() {
+    Codec<double> c = quantity(Dimension::position);
+    c.read = [read = c.read](Reader& reader, const Node& node, double& out) {
+        return read(reader, node, out) && check_size(reader, node, out);
+    };
+    return c;
+}
 
 /// x to rz of six numbers that `six(T&)` gives.
 template <class T, class Six>

@@ -1,7 +1,9 @@
 #include "config/machine_file/group_tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -105,6 +107,30 @@ void deviate(Reader& reader, axes::KinematicsDescription& description, const axe
     }
 }
 
+/// What calibration finds is small. Anything else is a unit that was mistaken, or another arm.
+void check_deviations(Reader& reader, const axes::Kinematics& arm, const ArmEntry& written, const std::string& unit,
+                      const std::string& here) {
+    constexpr double most_share = 0.02, most_turn = 5;  // of the arm's links in all; deg
+    constexpr double degrees = 180 / std::numbers::pi;
+    if (!arm.rows()) return;  // told already
+    double links = 0;
+    for (const auto& row : arm.rows()->rows) links += std::abs(row.a) + std::abs(row.d);
+    for (const auto& found : written.deviations) {
+        double shift = 0, turn = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            shift = std::max(shift, std::abs(found.six[i]));
+            turn = std::max(turn, std::abs(found.six[i + 3]) * degrees);
+        }
+        if (shift <= most_share * links && turn <= most_turn) continue;
+        const auto key = here + ".deviations." + found.axis;
+        const bool by_length = shift > most_share * links;
+        reader.problem_in(key, "config.group_arm",
+                          "`" + key + "` is " + (by_length ? show_number(shift) + " " + unit : show_number(turn) + " deg") +
+                              ", and a link differs by a fiftieth of the arm or 5 deg at most from the written one",
+                          "compare its units with the calibration's, or write the arm as it is");
+    }
+}
+
 /// The key of kinematics that an error of Kinematics::make is about: "scara.second", "joints", or the arm's.
 std::string key_of(const axes::ArmDescription& arm, const Error& why) {
     if (why.code == "kinematics.coupling") return "joints";
@@ -115,11 +141,14 @@ std::string key_of(const axes::ArmDescription& arm, const Error& why) {
     return why.subject.compare(0, kind.size() + 1, kind + ".") == 0 ? key + why.subject.substr(kind.size()) : key;
 }
 
+bool is_angle(std::string_view unit) { return parse_quantity("1 rad", Dimension::position, unit).problem == QuantityProblem::none; }
+
 void check_setup_velocity(Reader& reader, const Node& node, const GroupEntry& entry) {
     const auto* written = node.find("setup_velocity");
     if (written == nullptr) return;
     const auto most = parse_quantity("250 mm/s", Dimension::velocity, entry.unit);
     const double velocity = entry.group.setup_velocity;
+    if (parse_quantity(written->text, Dimension::velocity, entry.unit).problem != QuantityProblem::none) return;  // told already
     if (most.problem != QuantityProblem::none || (velocity > 0 && velocity <= most.value * (1 + 1e-12))) return;
     reader.problem(written->at, "group.setup_velocity",
                    "`setup_velocity` of group " + entry.group.name + " is " + show_number(velocity) + " " + entry.unit +
@@ -175,6 +204,12 @@ Table<GroupEntry> group_table() {
         const auto* unit = node.find("unit");
         const auto& known = axis_units();
         reader.axis_unit = unit != nullptr && std::find(known.begin(), known.end(), unit->text) != known.end() ? unit->text : g.unit;
+        if (unit != nullptr && node.find("kinematics") != nullptr && is_angle(reader.axis_unit)) {
+            reader.problem(unit->at, "config.group_unit",
+                           "group " + g.group.name + " has an arm, whose lengths and paths are not in " + reader.axis_unit,
+                           "write a unit of length, such as mm; its joints count in the units of their axes");
+            reader.axis_unit = GroupEntry{}.unit;  // so that its lengths are not accused
+        }
         check_names(reader, node, g.group.name);
     };
     table.after = [](Reader& reader, const Node& node, G& g) {
@@ -208,6 +243,7 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
         return group;
     }
     group.kinematics = std::make_shared<const axes::Kinematics>(made.value());
+    check_deviations(reader, made.value(), written, entry.unit, here);
     const auto& rotary = group.kinematics->rotary();
     for (std::size_t i = 0; i < std::min(group.members.size(), group.kinematics->joint_count()); ++i) {
         const auto unit = units.find(group.members[i]);
@@ -220,6 +256,20 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
                               "put the members into the order of the joints, from the base on, or correct the axis' `unit`");
     }
     return group;
+}
+
+void check_travel(Reader& reader, const GroupEntry& entry, const std::vector<runtime::AxisBinding>& axes) {
+    if (!entry.arm) return;
+    for (const auto& joint : entry.arm->joints) {
+        const auto binding = std::find_if(axes.begin(), axes.end(), [&](const auto& one) { return one.axis.name == joint.axis; });
+        if (!joint.limits || !joint.moved_by.empty() || binding == axes.end()) continue;
+        const auto& limits = binding->axis.limits;
+        if (joint.limits->first <= limits.position_max && joint.limits->second >= limits.position_min) continue;
+        const auto key = "groups." + entry.group.name + ".kinematics.joints." + joint.axis + ".limits";
+        reader.problem_in(key, "config.group_joint",
+                          "`" + key + "` and the software limits of axis " + joint.axis + " leave no place to the joint",
+                          "compare both: they are counted alike, in " + reader.units_of_axes[joint.axis]);
+    }
 }
 
 }  // namespace taktwerk::config

@@ -9,6 +9,7 @@
 
 #include "axes/group/group_config.hpp"
 #include "config/reading/field_table.hpp"
+#include "runtime/machine_config.hpp"
 
 namespace taktwerk::config {
 
@@ -36,5 +37,8 @@ struct GroupEntry {
 /// The group as the machine has it. `units`: of the axes, by name. Errors with their place: config.group_unit, config.group_arm, and those of Kinematics::make; of equip().
 [[nodiscard]] axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry,
                                             const std::map<std::string, std::string, std::less<>>& units);
+
+/// Once the axes are known. Error: config.group_joint (limits of a joint that its axis never reaches).
+void check_travel(Reader& reader, const GroupEntry& entry, const std::vector<runtime::AxisBinding>& axes);
 
 }  // namespace taktwerk::config

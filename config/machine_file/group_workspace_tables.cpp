@@ -24,6 +24,14 @@ struct RoomEntry {
     axes::SixNumbers frame{};
 };
 
+Codec<std::pair<double, double>> side_of_room() {
+    auto c = interval(Dimension::position);
+    c.read = [read = c.read](Reader& reader, const Node& node, std::pair<double, double>& out) {
+        return read(reader, node, out) && check_size(reader, node.items[0], out.first) && check_size(reader, node.items[1], out.second);
+    };
+    return c;
+}
+
 Table<RoomEntry> room_table() {
     using R = RoomEntry;
     Table<R> table{
@@ -37,7 +45,7 @@ Table<RoomEntry> room_table() {
     f.push_back(field("kept_free", &R::kept_free, boolean(), "the tool's point stays out of it; else it stays inside one of the others"));
     const auto side = [&](const char* key, std::size_t i, const char* doc) {
         f.push_back(with_default(field_at<R>(
-                                     key, [i](R & r) -> auto& { return r.sides[i]; }, maybe(interval(Dimension::position)), doc),
+                                     key, [i](R & r) -> auto& { return r.sides[i]; }, maybe(side_of_room()), doc),
                                  "without an end"));
     };
     side("x", 0, "from where to where, in its frame");
@@ -53,12 +61,13 @@ Table<RoomEntry> room_table() {
     f.push_back(field_via<R>(
         "frame", section(std::move(frame)), [](R& r, const axes::SixNumbers& six) { r.frame = six; }, "in which the sides are counted",
         "the machine's"));
-    table.after = [](Reader& reader, const Node& node, R& r) {
-        const bool sides = r.sides[0] || r.sides[1];
-        if (r.radius && sides)
+    table.after = [](Reader& reader, const Node& node, R&) {
+        const auto written = [&](const char* key) { return node.find(key) != nullptr; };  // also wrongly: that is told already
+        const bool sides = written("x") || written("y"), radius = written("radius");
+        if (radius && sides)
             reader.problem(node.at, "config.group_room", "`" + reader.path() + "` has a radius and sides along x or y",
                            "write `radius` and `z` for a cylinder, x, y, z for a box; its middle is that of `frame`");
-        else if (!r.radius && !sides && !r.sides[2])
+        else if (!radius && !sides && !written("z"))
             reader.problem(node.at, "config.group_room", "`" + reader.path() + "` has no side at all",
                            "write from where to where it goes, such as x: [-400 mm, 400 mm]");
     };

@@ -92,7 +92,10 @@ public:
             out.machine.cams.push_back(std::move(entry.cam));
             out.warnings.insert(out.warnings.end(), entry.remarks.begin(), entry.remarks.end());
         }
-        for (const auto& entry : file_.groups) out.machine.axis_groups.push_back(made_of(reader_, entry, reader_.units_of_axes));
+        for (const auto& entry : file_.groups) {
+            out.machine.axis_groups.push_back(made_of(reader_, entry, reader_.units_of_axes));
+            check_travel(reader_, entry, out.machine.axes);
+        }
         for (auto& entry : file_.paths) {
             complete(reader_, entry, fs::path(path_).parent_path().string());
             out.machine.paths.push_back(entry.path);
@@ -564,7 +567,7 @@ std::string file_path_of(std::string subject) {
         {".gearing.load_revolutions", ".gearing.gear"},
     };
     for (const auto& [member, key] : names)
-        if (const auto at = subject.find(member); at != std::string::npos) return subject.replace(at, member.size(), key);
+        if (const auto at = subject.find(member); at != std::string::npos) subject.replace(at, member.size(), key);
     return subject;
 }
 

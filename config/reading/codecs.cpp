@@ -124,6 +124,14 @@ void report_wrong_type(Reader& reader, const Node& node, std::string_view wanted
                    example.empty() ? std::string("correct the value") : fmt::format("write for instance `{}`", example));
 }
 
+void report_no_section(Reader& reader, const Node& node, const std::string& key) {
+    reader.problem(node.at, "config.wrong_type",
+                   reader.path().empty() ? fmt::format("{} is not a section of `key: value` lines", shown(node))
+                                         : fmt::format("{} for `{}` is not a section of `key: value` lines", shown(node), reader.path()),
+                   key.empty() ? std::string("correct the value")
+                               : fmt::format("write its keys indented below it, such as `{}: ...`, or in braces: {{ {}: ... }}", key, key));
+}
+
 std::optional<std::int64_t> read_integer(Reader& reader, const Node& node, std::int64_t minimum, std::int64_t maximum) {
     const auto value = node.kind == Node::Kind::scalar && !node.quoted ? parse_integer(node.text) : std::nullopt;
     if (!value) {

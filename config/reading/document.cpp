@@ -100,7 +100,8 @@ public:
     Node convert(const YAML::Node& from, Position fallback, int depth) {
         Node node;
         const auto mark = from.Mark();
-        node.at = mark.is_null() || mark.line < 0 ? fallback : Position{mark.line + 1, mark.column + 1};
+        // Of a value that is not there the mark is that of whatever comes next.
+        node.at = mark.is_null() || mark.line < 0 || (from.IsNull() && depth > 0) ? fallback : Position{mark.line + 1, mark.column + 1};
         if (full_) return node;
         if (++count_ > max_nodes) {
             full_ = true;

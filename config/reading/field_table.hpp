@@ -139,13 +139,15 @@ void include_fields(std::vector<Field<T>>& into, Get get, const Table<M>& table)
 void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known);
 void report_missing_key(Reader& reader, const Node& section, std::string_view key, const FieldInfo& info);
 void report_wrong_type(Reader& reader, const Node& node, std::string_view wanted, std::string_view example);
+/// `key`: one that it has.
+void report_no_section(Reader& reader, const Node& node, const std::string& key);
 /// What a value of this shape is called in messages, and an example of it.
 [[nodiscard]] std::string wanted_text(const Shape& shape, std::string_view axis_unit);
 
 template <class T>
 bool read_table(Reader& reader, const Node& node, const Table<T>& table, T& object) {
     if (node.kind != Node::Kind::map) {
-        report_wrong_type(reader, node, "a section of `key: value` lines", {});
+        report_no_section(reader, node, table.fields.empty() ? std::string{} : table.fields.front().info.key);
         return false;
     }
     const auto errors_before = reader.errors().size();

@@ -44,7 +44,7 @@ public:
         spindle_turns_ = d.input("spindle_turns");
         spindle_ = d.output("spindle");
         air_ = d.output("air");
-        d.operator_switch("engraves", engraves_, {.doc = "one plate after the other"});
+        d.operator_switch("engraves", engraves_, {.doc = "one plate after the other; a stop and an error switch it off"});
         d.operator_switch("holds", holds_, {.doc = "stands on the path"});
         d.operator_switch("one_by_one", one_by_one_, {.doc = "a block at a time, from the next plate on"});
         d.operator_button("go_on", go_on_, {.doc = "after M0, M1, a tool, a block"});
@@ -62,7 +62,9 @@ public:
     void start() override {
         up_.enable.Execute = up_.reset.Execute = select_.Execute = move_.Execute = hold_.Execute = continue_.Execute = false;
         for (auto& home : up_.homes) home.Execute = false;
-        spindle_on_ = air_on_ = false;
+        on_ = {};
+        idle_ = false;
+        engraves_ = true;
     }
 
     void scan(TaskContext& ctx) {
@@ -93,41 +95,45 @@ public:
         if (hold_.Done) hold_was_ = true;
         if (continue_.Done || !move_.Busy) hold_was_ = false;
         answer(ctx);
-        ctx.set(spindle_, spindle_on_ && status_.Valid && !status_.GroupErrorStop);
-        ctx.set(air_, air_on_);
+        ctx.set(spindle_, on_.spindle && status_.Valid && !status_.GroupErrorStop);
+        ctx.set(air_, on_.air);
     }
 
 private:
-    bool spindle_on_ = false, air_on_ = false, hold_was_ = false;
+    struct {
+        bool spindle = false, air = false;
+    } on_;
+    bool hold_was_ = false;
+    bool idle_ = false;  ///< path blocks have seen Execute FALSE
 
     void engrave(TaskContext& ctx) {
         const bool stands = status_.GroupStandby && up_.power.Status;
         select_.PathDescription = {plate_, {.single_block = one_by_one_}};
-        if (stands && engraves_ && !select_.Execute) select_.Execute = true;
+        if (stands && engraves_ && idle_) select_.Execute = true;
         select_(ctx);
         move_.PathData = select_.PathData;
         if (select_.Done) move_.Execute = true;
         move_(ctx);
+        idle_ = !select_.Execute && !move_.Execute;  // the blocks have seen it: the next TRUE is an edge
         if (move_.Done) ++plates_;
         const bool over = move_.Done || move_.Error || move_.CommandAborted || select_.Error;
-        if (move_.Error || select_.Error) {
-            ++failed_;
-            engraves_ = false;  // somebody has to look
-        }
+        if (move_.Error || select_.Error) ++failed_;
+        // Somebody has to look, or has stopped it: it does not begin by itself.
+        if (!idle_ && over && !move_.Done) engraves_ = false;
         if (over) select_.Execute = move_.Execute = false;
-        if (!move_.Busy) spindle_on_ = air_on_ = false;  // also M30's business
+        if (!move_.Busy) on_ = {};  // also M30's business
     }
 
     /// What the path asks for is done here; it stands until that has happened.
     void answer(TaskContext& ctx) {
         bool done = false;
-        switch (asked_.Request) {
+        switch (move_.Busy ? asked_.Request : mcPathNothing) {  // of a path that was stopped nobody wants anything any more
             case mcPathSpindleClockwise:
-            case mcPathSpindleCounter: spindle_on_ = true, done = ctx.get(spindle_turns_); break;
-            case mcPathSpindleOff: spindle_on_ = false, done = true; break;
+            case mcPathSpindleCounter: on_.spindle = true, done = ctx.get(spindle_turns_); break;
+            case mcPathSpindleOff: on_.spindle = false, done = true; break;
             case mcPathMist:
-            case mcPathFlood: air_on_ = done = true; break;
-            case mcPathCoolantOff: air_on_ = false, done = true; break;
+            case mcPathFlood: on_.air = done = true; break;
+            case mcPathCoolantOff: on_.air = false, done = true; break;
             case mcPathToolChange: done = changing_.Q; break;  // by hand, here: half a second
             default: done = go_on_; break;
         }

@@ -38,6 +38,16 @@ TEST(TraceFile, TimeIsThatOfTheLogAndUnitsComeFromTheHeading) {
     EXPECT_THAT(trace->axes[0].following_error, ElementsAre(0.25, 0.25));
 }
 
+// Of an axis that its group leads (state 5) nobody plans a jerk: 0.5 more acceleration in 0.25 s is 2 of jerk. Another axis has what was recorded.
+TEST(TraceFile, JerkOfAnAxisThatIsLedIsWhatItsAccelerationsAreApart) {
+    const auto trace = parse_trace(heading +
+                                       "1,0,0,5,7,2,3,0,7,1,0,0,1\n1.25,0,0,5,7,2,3.5,0,7,1,0,0,1\n1.5,0,0,5,7,2,3.5,0,7,1,0,0,1\n"
+                                       "1.75,0,0,3,7,2,9,0,7,1,0,0,1\n",
+                                   "t.csv");
+    ASSERT_TRUE(trace) << trace.error().text();
+    EXPECT_THAT(trace->axes[0].set_jerk, ElementsAre(0, 2, 0, 0));
+}
+
 // A recording is drawn as a trace is: each signal a column, with its unit, the time from its first row.
 TEST(RecordingCsv, IsTheTraceOfItsCycles) {
     using Coding = runtime::SignalCell::Coding;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "axes/group/room_check.hpp"
 #include "axes/group/workspace.hpp"
 #include "tests/axes/group/jog_rig.hpp"
 #include "tests/axes/group/track_rig.hpp"
@@ -233,6 +234,46 @@ TEST(GroupWorkspace, ABeltDoesNotCarryTheToolOut) {
     for (const auto& at : rig.path) ASSERT_LE(at[0], 100 + 1e-6);
 }
 
+// What stops off the path is looked at all the way. The belt goes along the diagonal of X and Y, 28.3 u/s each; X stops within 1.505 u in 0.106 s, Y, whose
+// jerk is less, within 2.38 u in 0.168 s: v sqrt(v / j), 2 sqrt(v / j). So the tool leaves the diagonal when it brakes in front of a wall; some 2.3 u along and
+// 0.25 u beside it, between where it begins and the diagonal on which it would rest, stands a post of 0.2 u.
+TEST(GroupWorkspace, ABeltsToolDoesNotBrakeThroughWhatStandsBesideItsWay) {
+    const std::array<double, 4> eighth{std::cos(std::numbers::pi / 8), 0, 0, std::sin(std::numbers::pi / 8)};
+    const auto along = [](double s, double n) {
+        return std::array<double, 3>{(s - n) / std::numbers::sqrt2, (s + n) / std::numbers::sqrt2, 0};
+    };
+    auto wall = box(along(70.71, 0), {0.5, 500, 500}, true), post = box(along(69.76, 0.25), {0.1, 0.1, 500}, true);
+    wall.middle.orientation = post.middle.orientation = eighth;
+    auto members = GroupRig::named(3);
+    members[1].limits.jerk = 4000;
+    TrackRig rig(members, cartesian_arm(), belt_axis({.velocity = 100, .acceleration = 100, .deceleration = 100, .jerk = 1000}),
+                 {wall, post});
+    ASSERT_EQ(rig.track({0, 0, 0, 0, 0, std::numbers::pi / 4}, {}).error, ErrorId::none);
+    const auto on = rig.give(on_product(line({0, 0, 1}, 40)));
+    ASSERT_TRUE(rig.done(on.id));
+    rig.drive_belt(40);
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupErrorStop; }, 6000)) << rig.point()[0];
+    EXPECT_EQ(rig.view().error, static_cast<std::uint16_t>(ErrorId::frame_limit));
+    rig.run(500);
+    const Workspace space{{wall, post}};
+    for (const auto& at : rig.path) ASSERT_GE(space.clearance({at[0], at[1], at[2]}), -1e-6) << at[0] << ' ' << at[1];
+    EXPECT_GT(std::hypot(rig.point()[0], rig.point()[1]), 66) << "not long before it either";
+}
+
+// X is held for an hour, if nobody lets go: it has no limit. 20 u beside the way a wall goes along, and somewhere a peg stands out of it, across the way.
+TEST(GroupWorkspace, AJogBesideAWallSeesAPegHoweverFarItIs) {
+    const auto arm = plane_arm();
+    for (const double peg : {30.0, 777.0, 5000.0, 12345.0}) {
+        const Workspace space{{box({0, 120, 0}, {1e6, 100, 100}, true), box({peg, 0, 0}, {1, 20, 100}, true)}};
+        MoveSpace around;
+        around.arm = arm.get();
+        around.members = 2;
+        around.workspace = &space;
+        const double seconds = inside_until(3600, {}, {20, 0}, {}, around);
+        EXPECT_NEAR(20 * seconds, peg - 1, 2e-9 * peg);
+    }
+}
+
 // --- how far from the path -----------------------------------------------------------------------------------------------------------
 
 // One member stays 1.5 u behind, another 2.0: together the tool is 2.5 from where it should be. Each alone is inside its own window.
@@ -269,6 +310,75 @@ TEST(GroupFollowing, TheToolTooFarFromItsPathIsAnErrorOfTheGroup) {
         rig.run(20);
         EXPECT_EQ(rig.view().path_deviation, 0) << "nobody moves it";
     }
+}
+
+// Of a SCARA whose last joint's screw lifts its shaft, the tool 40 mm beside the flange: motors that stay behind by degrees, and what that is at the tool by hand.
+// Beyond the window for longer than its time it is an error, and else it is none, however often it is beyond for less.
+TEST(GroupFollowing, OfAnArmItIsTheToolsWay) {
+    constexpr double degree = std::numbers::pi / 180, screw = -20.0 / 360;  // mm a degree
+    KinematicsDescription scara{.arm = ScaraLengths{.first = 200, .second = 150}};
+    for (const std::size_t i : {0u, 1u, 3u}) scara.joints[i].unit = degree;
+    scara.coupling[2][3] = screw / degree;
+    const auto place = [&](const std::array<double, 4>& motor) {
+        const double a = motor[0] * degree, b = a + motor[1] * degree, c = b + motor[3] * degree;
+        return std::array<double, 3>{200 * std::cos(a) + 150 * std::cos(b) + 40 * std::cos(c),
+                                     200 * std::sin(a) + 150 * std::sin(b) + 40 * std::sin(c), motor[2] - screw * motor[3]};
+    };
+    std::mt19937 draw(11);
+    std::uniform_real_distribution<double> by(-1.2, 1.2);
+    int tripped = 0, stayed = 0;
+    for (int run = 0; run < 24; ++run) {
+        auto configs = GroupRig::named(4);
+        for (auto& config : configs) config.following.window = 100;
+        auto groups = GroupRig::all_of(configs, arm_of(scara));
+        groups[0].following = {3, 20ms};
+        GroupRig rig(configs, groups);
+        rig.enable();
+        GroupCommand write{.kind = GroupCommandKind::write_tool, .execution = mcImmediately, .number = 1};
+        write.tool.frame = {40, 0, 0, 0, 0, 0};
+        ASSERT_EQ(rig.give(write).error, ErrorId::none);
+        ASSERT_EQ(rig.set(SelectTool{1}), ErrorId::none);
+        (void)rig.give({.kind = GroupCommandKind::direct_absolute, .target = {60, 80, 20, 50}, .dynamics = {.velocity = 20}});
+        rig.run(200);
+        for (int piece = 0; piece < 8 && rig.view().state == GroupMoving; ++piece) {
+            std::array<double, 4> lag{};
+            for (std::size_t i = 0; i < 4; ++i) {
+                lag[i] = by(draw);
+                rig.drives[i]->lag = std::llround(1000 * lag[i]);
+            }
+            rig.run(3);  // until it is seen
+            const int length = draw() % 2 == 0 ? 12 : 40;
+            double least = 1e9, most = 0;
+            for (int i = 0; i < length && rig.view().state == GroupMoving; ++i) {
+                rig.step();
+                std::array<double, 4> is{}, told{};
+                for (std::size_t k = 0; k < 4; ++k) {
+                    is[k] = rig.view().actual_position[k];
+                    told[k] = is[k] + lag[k];
+                }
+                const auto a = place(is), b = place(told);
+                const double off = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+                ASSERT_NEAR(rig.view().path_deviation, off, 0.02) << "counts of 0.001 degrees, 390 mm away";
+                least = std::min(least, off);
+                most = std::max(most, off);
+            }
+            const bool error = rig.view().state == GroupErrorStop;
+            if (length == 40 && least > 3.05) {
+                EXPECT_TRUE(error) << run << " " << piece << " " << least;
+                ++tripped;
+            }
+            if (length == 12 || most < 2.95) {
+                EXPECT_FALSE(error) << run << " " << piece << " " << most;
+                ++stayed;
+            }
+            for (auto& drive : rig.drives) drive->lag = 0;
+            if (rig.view().state == GroupMoving) rig.run(6);
+        }
+        for (auto& drive : rig.drives) drive->lag = 0;
+        rig.run(400);
+    }
+    EXPECT_GT(tripped, 5);
+    EXPECT_GT(stayed, 20);
 }
 
 }  // namespace

@@ -98,5 +98,41 @@ TEST(Engraver, GivesTheSameBitsEachTime) {
     EXPECT_FALSE(first.below.empty());
 }
 
+// A person stops it, on its way and while it stands at what the path asks for (M3, which the spindle does not answer): it does not begin again by
+// itself, and does when it is told to.
+TEST(Engraver, BehindAStopItWaitsForAPerson) {
+    for (const bool on_its_way : {true, false}) {
+        ExampleMachine m{"engraver"};
+        ASSERT_TRUE(m.up());
+        m.world().set_input("spindle_turns", on_its_way);
+        const auto moves = [&] { return m.axis("x").set_velocity != 0 || m.axis("y").set_velocity != 0 || m.axis("z").set_velocity != 0; };
+        if (on_its_way) ASSERT_TRUE(m.until([&] { return m.variable("line") > 15 && moves(); }, 20s));
+        else ASSERT_TRUE(m.until([&] { return m.output("spindle") && m.variable("waits") != 0; }, 20s));
+        m.run(100ms);
+        runtime::OperatorCommand halt;
+        halt.action = runtime::OperatorAction::group_halt;
+        halt.index = 0;
+        EXPECT_EQ(m.command(halt).answer, runtime::Answer::accepted);
+        m.run(2s);
+        EXPECT_FALSE(moves()) << on_its_way;
+        EXPECT_EQ(m.variable("engraves"), 0);
+        EXPECT_FALSE(m.output("spindle"));
+        EXPECT_FALSE(m.output("air"));
+        m.world().set_input("spindle_turns", true);
+        const auto& variables = m.machine().layout().variables;
+        for (std::size_t i = 0; i < variables.size(); ++i) {
+            if (variables[i].name != "engraves") continue;
+            runtime::OperatorCommand on;
+            on.action = runtime::OperatorAction::set_value;
+            on.index = static_cast<std::uint16_t>(i);
+            on.value = 1;
+            on.flag = true;
+            EXPECT_EQ(m.command(on).answer, runtime::Answer::accepted);
+        }
+        EXPECT_TRUE(m.until([&] { return m.variable("plates") >= 1; }, 40s))
+            << on_its_way << ' ' << m.variable("line") << ' ' << m.alarms();
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::engraver_example
