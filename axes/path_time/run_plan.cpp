@@ -14,14 +14,15 @@ namespace {
 constexpr int rounds_at_most = 9;
 constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
-constexpr double slow_share = 0.02;     // of v2: what goes on where a former plan stopped
-constexpr double braking_share = 0.7;   // of the deceleration and the jerk, to a lowered velocity
-constexpr double guessed_share = 0.75;  // the same where the search begins: a little below
-constexpr double guessed_below = 0.97;  // of that velocity
-constexpr double over_ramp = 1.0005;    // of v2 on that braking: what cells cannot follow
-constexpr int window = 192;             // cells that are solved and stay
-constexpr int look_ahead = 48;          // cells behind them that are solved with them, at least: as far as braking would reach
-constexpr int beside = 10;              // cells on both sides that are solved again with one that was beyond a limit
+constexpr double slow_share = 0.02;        // of v2: what goes on where a former plan stopped
+constexpr double braking_share = 0.7;      // of the deceleration and the jerk, to a lowered velocity
+constexpr double guessed_share = 0.75;     // the same where the search begins: a little below
+constexpr double guessed_below = 0.97;     // of that velocity
+constexpr double below_factor = 1 - 6e-5;  // of a lowered velocity: what is left of a soft cap is below it
+constexpr double over_ramp = 1.0005;       // of v2 on that braking: what cells cannot follow
+constexpr int window = 192;                // cells that are solved and stay
+constexpr int look_ahead = 48;             // cells behind them that are solved with them, at least: as far as braking would reach
+constexpr int beside = 10;                 // cells on both sides that are solved again with one that was beyond a limit
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -67,7 +68,7 @@ void RunPlanner::add_cell(int cell) {
         double square = l.velocity * l.velocity;
         if (!shared) {
             // Above a lowered velocity factor a moving beginning may be; it is left as soon as the limits allow.
-            const double wanted = p.path.velocity * task_.velocity_factor;
+            const double wanted = below_factor * p.path.velocity * task_.velocity_factor;
             if (moving && task_.velocity_factor < 1 && wanted < unlimited)
                 problem_.add_soft_cap(std::max(wanted * wanted, ramp_.empty() ? 0 : ramp_[3 * c + static_cast<std::size_t>(place)]));
             if (cell == 0 && place == CellPlace::begin)
