@@ -122,9 +122,9 @@ private:
     double least_ = -1e9;
 };
 
-class Walk {
+class RoomWalk {
 public:
-    Walk(std::uint64_t seed, const JogArm& arm)
+    RoomWalk(std::uint64_t seed, const JogArm& arm)
         : draw_(seed),
           arm_(arm),
           kinematics_(arm_of(arm.description)),
@@ -282,7 +282,7 @@ TEST(GroupWorkspaceProperty, NoArmLeadsItsToolThroughAWall) {
     int refused = 0, gone = 0, walls = 0;
     for (std::size_t i = 0; i < property_cases(arms.size()) && !HasFailure(); ++i) {
         SCOPED_TRACE(::testing::Message() << "walk " << i << " of " << arms[i % arms.size()].name);
-        Walk walk(9100 + i, arms[i % arms.size()]);
+        RoomWalk walk(9100 + i, arms[i % arms.size()]);
         walk.go(8);
         refused += walk.refused();
         gone += walk.gone();
