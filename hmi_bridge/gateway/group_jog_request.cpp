@@ -73,7 +73,7 @@ Result<runtime::GroupJogOrder> read_group_jog(const GroupJogRequest& request, co
         const char sign = word.back();
         const auto slot = std::find(slots.begin(), slots.end(), name);
         if ((sign != '+' && sign != '-') || slot == slots.end()) {
-            if (const auto elsewhere = other_frame(name, frame->second, layout, info); !elsewhere.empty())
+            if (const auto elsewhere = other_frame(name, *frame, layout, info); !elsewhere.empty())
                 return bad(fmt::format("{} is no direction of it in {}", quoted(word), request.frame), elsewhere);
             const auto near = nearest_name(name.substr(0, longest_word), slots);
             return bad(fmt::format("{} is no direction of it in {}", quoted(word), request.frame),
