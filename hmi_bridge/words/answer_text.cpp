@@ -208,8 +208,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                 error.what = fmt::format("{} ({}): {}", text->english.text, text->name, text->english.cause);
                 error.remedy = fmt::format("{}.", text->english.remedy);
             } else if (const auto* alarm = find_alarm(axes::axis_alarms, static_cast<AlarmId>(answer.error))) {
-                error.what = fmt::format("{} alarm '{}' has ended it: {}", is_of_a_group(kind) ? "one of its axes stopped, and its" : "its",
-                                         alarm->name, alarm->cause);
+                error.what = is_of_a_group(kind)
+                                 ? fmt::format("one of its axes stopped, and its alarm '{}' has ended it: {}", alarm->name, alarm->cause)
+                                 : fmt::format("its alarm '{}' has ended it: {}", alarm->name, alarm->cause);
                 error.remedy = fmt::format("{}. `taktwerk monitor` shows the alarm.", alarm->remedy);
             } else {
                 error.what = fmt::format("the axis refused it with error {}", static_cast<unsigned>(answer.error));
