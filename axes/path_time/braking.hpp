@@ -17,6 +17,9 @@ public:
         hold_ = peak_ > 0 ? std::fmax((v + (a * a / 2 - peak_ * peak_) / jerk) / peak_, 0.0) : 0.0;
     }
     [[nodiscard]] double duration() const noexcept { return ramp_ + hold_ + last_; }
+    /// Until the deceleration is there, and from where it goes.
+    [[nodiscard]] double ramp_way() const noexcept { return at(ramp_).way; }
+    [[nodiscard]] double last_way() const noexcept { return way() - at(ramp_ + hold_).way; }
     [[nodiscard]] double way() const noexcept { return at(duration()).way; }
 
     struct State {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "axes/path_time/curve_samples.hpp"
+
 namespace taktwerk::axes {
 namespace {
 
@@ -13,10 +15,7 @@ constexpr std::size_t verified_points = 4 * per_quarter;  // per cell, and its b
 constexpr double may_miss_velocity = 4e-6, may_miss_acceleration = 4e-6, may_miss_jerk = 2e-4;
 // The error of such a polynomial is as t^3 (1 - t)^3, whose slope vanishes in the middle: its greatest slope by its middle value.
 constexpr double greatest_slope = 3.44;
-// Where q' changes by more than this part from one point to the next, they do not say what is between them.
-constexpr double unresolved = 0.3;
-constexpr int deepest_look = 6;       // halvings of a cell, until they do
-constexpr double looks_closer = 0.9;  // of a limit, from which on peaks between points count
+constexpr int deepest_look = 6;  // halvings of a cell, until its points say what is between them
 
 /// q', q'', q''' over an interval through their values at its ends: a polynomial of the fifth degree for q'.
 class Hermite {
@@ -42,23 +41,6 @@ private:
 
 using Samples = std::array<double, verified_points + 1>;
 
-/// The greatest magnitude, with what a parabola through each three samples reaches between them, and what it may be wrong by: a cubic's part.
-double peak_of(const Samples& x) {
-    constexpr double cubic = 0.065;  // the greatest |t (t^2 - 1)|/6 on [-1, 1]
-    double most = 0;
-    for (const double v : x) most = std::max(most, std::fabs(v));
-    if (most < looks_closer) return most;
-    for (std::size_t i = 2; i < x.size(); ++i) {
-        const double bend = x[i] - 2 * x[i - 1] + x[i - 2], slope = x[i] - x[i - 2];
-        if (std::fabs(slope) >= 2.2 * std::fabs(bend)) continue;
-        double third = 0;
-        if (i > 2) third = std::fabs(bend - (x[i - 1] - 2 * x[i - 2] + x[i - 3]));
-        if (i + 1 < x.size()) third = std::max(third, std::fabs(x[i + 1] - 2 * x[i] + x[i - 1] - bend));
-        most = std::max(most, std::fabs(x[i - 1] - slope * slope / (8 * bend)) + cubic * third);
-    }
-    return most;
-}
-
 /// What interpolation from a to b misses in the middle m.
 LimitUse missed(const TimedCurvePoint& a, const TimedCurvePoint& m, const TimedCurvePoint& b, std::size_t axis, double length,
                 const PathAxisLimits& limits) {
@@ -69,21 +51,6 @@ LimitUse missed(const TimedCurvePoint& a, const TimedCurvePoint& m, const TimedC
 }
 
 using Points = std::array<TimedCurvePoint, verified_points + 1>;
-
-/// A cusp, or a joint that whips round: narrower than the points lie apart.
-bool turns_between(const Points& points, std::size_t axes) {
-    double before = 0;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-        double size = 0, change = 0;
-        for (std::size_t i = 0; i < axes; ++i) {
-            size += points[k].first[i] * points[k].first[i];
-            if (k > 0) change += std::pow(points[k].first[i] - points[k - 1].first[i], 2);
-        }
-        if (k > 0 && change > unresolved * unresolved * std::max(size, before)) return true;
-        before = size;
-    }
-    return false;
-}
 
 /// v2 over a cell at the points, its root, and its slope, which is the acceleration.
 struct Motion {
@@ -123,7 +90,7 @@ PathAxisLimits reciprocal(const PathAxisLimits& l) { return {1 / l.velocity, 1 /
 double at_nodes(const Samples& x) { return std::max(std::fabs(x.front()), std::fabs(x.back())); }
 
 void Looks::add_to(CellUse& use) const {
-    use.peak.widen({peak_of(x), peak_of(y), peak_of(z)});
+    use.peak.widen({sampled_peak(x), sampled_peak(y), sampled_peak(z)});
     use.nodes.widen({at_nodes(x), at_nodes(y), at_nodes(z)});
 }
 

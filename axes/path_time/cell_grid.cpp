@@ -20,7 +20,9 @@ constexpr double longest_start = 0.012;  // s
 // Nor is it shorter than this part of the run, however slow that is: cells have to be longer than a place's last digits.
 constexpr double shortest_rest = 1e-9;
 constexpr std::size_t most_cells = 200'000;  // a run that asks for more is not planned
-constexpr double cells_of_braking = 40;      // to a lowered velocity
+// Of the way in which a deceleration comes or goes, that cells at its ends are long; and the least part of a run that they are.
+constexpr double corner_share = 0.25, shortest_corner = 2.5e-8;
+constexpr double cells_of_braking = 40;  // to a lowered velocity
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
 constexpr double fewer = 2.7;
@@ -123,11 +125,32 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
     add_stations(whole / (coarse ? most_of_coarse_run : most_of_run), task.brake_way);
+    if (task.halt_share > 0) add_corners_of_halt(task);
     // A quadratic with this beginning has to stay positive over the first cell.
     if (!from_rest && start.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start.square / -start.slope);
     if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start.rest_length);
     sizes_.back() = std::min(sizes_.back(), growth * end.rest_length);
     add_nodes();
+}
+
+/// A halt bends v2(s) where its jerk begins and where it ends: in ways that may be ever so short beside the whole one.
+void CellGrid::add_corners_of_halt(const RunTask& task) {
+    const auto add = [&](double s, double way) {
+        const double size = std::max(corner_share * way, shortest_corner * (task.to - task.from));
+        const auto behind = std::upper_bound(stations_.begin(), stations_.end(), s);
+        const auto i = behind - stations_.begin();
+        if (behind != stations_.end() && s > stations_[static_cast<std::size_t>(i) - 1]) {
+            stations_.insert(behind, s);
+            sizes_.insert(sizes_.begin() + i, size);
+            bends_.insert(bends_.begin() + i, bends_[static_cast<std::size_t>(i) - 1]);
+        } else {
+            double& before = sizes_[static_cast<std::size_t>(i) - 1];
+            before = std::min(before, size);
+        }
+    };
+    add(task.from, task.halt_ramp);
+    add(task.from + task.halt_ramp, task.halt_ramp);
+    add(task.to - task.halt_last, task.halt_last);
 }
 
 /// Cells in whose ends the curve bends more sharply than at any station are halved until they fit.

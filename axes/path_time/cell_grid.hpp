@@ -20,6 +20,10 @@ struct RunTask {
     double velocity_factor = 1;
     /// > 0: comes to rest as soon as it can, and `to` is halt_way() with this share of the limits: the search begins with that braking.
     double halt_share = 0;
+    /// Of that braking: the ways in which its deceleration comes and goes.
+    double halt_ramp = 0, halt_last = 0;
+    /// What share of its usual deceleration and jerk the search begins with that brakes to a lowered velocity factor.
+    double softness = 1;
     /// From a moving state: so long it brakes for a lowered velocity. The cells are small there.
     double brake_way = 0;
 };
@@ -40,6 +44,7 @@ private:
     void add_breaks(const RunTask& task);
     void add_stations(double largest_of_run, double brake_way);
     [[nodiscard]] double size_at(double s, std::size_t& station) const;
+    void add_corners_of_halt(const RunTask& task);
     void add_nodes();
     void split_at_narrow_places();
     [[nodiscard]] bool too_long(double a, double b) const;

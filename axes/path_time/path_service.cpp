@@ -10,9 +10,10 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double first_share = 0.98;  // of the limits, that a halt is tried with first
-constexpr double stop_growth = 1.15;  // of a stopping distance that did not do
-constexpr int most_stops = 12;
+/// Of the limits, that a halt is tried with: nearly all along a line, ever less where the path bends.
+constexpr double halt_shares[] = {0.98, 0.955, 0.93, 0.905, 0.85, 0.74, 0.645, 0.56, 0.485, 0.42, 0.37, 0.32, 0.28, 0.24, 0.21};
+constexpr int patience = 4;  // borders from which a lowered velocity is not found, until it is looked for with less deceleration
+constexpr double softer = 0.6, softest = 0.1;
 constexpr double furthest_border = 0.25;  // s behind the first one
 /// Pieces are cut anew so long before the cycle comes to long ones: more than a plan takes, with its lead.
 constexpr double cut_before = 1.0;     // s
@@ -42,8 +43,10 @@ bool PathService::failed_before(const Failed& now) const noexcept {
 }
 
 PathAnswer PathService::nothing_found(const Failed& now, bool at_rest) noexcept {
+    const int times = failed_before(now) ? failed_.times + 1 : 1;
     failed_ = now;
     failed_.any = true;
+    failed_.times = times;
     return at_rest ? PathAnswer::stuck : PathAnswer::kept;
 }
 
@@ -69,8 +72,7 @@ void PathService::send(int at_piece, const RunTask& task, bool stands, std::uint
 bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former) {
     const AlongLimits l = along_limits(curve.at(task.from, CurveSide::after), limits_, 1);
     // As along a straight line with all of the limits, then with ever less of them.
-    double share = first_share;
-    for (int i = 0; i < most_stops; ++i, share /= stop_growth) {
+    for (const double share : halt_shares) {
         const double way = Braking(task.velocity, task.acceleration, share * l.deceleration, share * l.jerk).way();
         task.to = task.from + way;
         task.halt_share = share;
@@ -141,6 +143,8 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     if (!at_rest && same) return shorten(curve, static_cast<std::size_t>(begin), task);
     if (!(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
     if (again && failed_.border >= begin) return PathAnswer::stuck;  // at rest, and it was tried
+    // Where the path bends, braking as along a line may be too far from what can be; from a softer one there is a way in.
+    if (again && failed_.times > patience) task.softness = std::max(std::pow(softer, failed_.times - patience), softest);
     ++tries_;
     planner_.plan(curve, limits_, task, plan_, former);
     for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > TimeStretch::most_pieces; ++i) {

@@ -67,6 +67,7 @@ private:
         bool any = false;
         bool stand = false;
         std::uint32_t stretch = 0, revision = 0;
+        int times = 0;   // one after the other
         int border = 0;  // the furthest one tried
         double to = 0, factor = 1;
     };

@@ -14,15 +14,16 @@ namespace {
 constexpr int rounds_at_most = 9;
 constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
 constexpr int split_rounds = 4;
-constexpr double slow_share = 0.02;        // of v2: what goes on where a former plan stopped
-constexpr double braking_share = 0.7;      // of the deceleration and the jerk, to a lowered velocity
-constexpr double guessed_share = 0.75;     // the same where the search begins: a little below
-constexpr double guessed_below = 0.97;     // of that velocity
-constexpr double below_factor = 1 - 6e-5;  // of a lowered velocity: what is left of a soft cap is below it
-constexpr double over_ramp = 1.0005;       // of v2 on that braking: what cells cannot follow
-constexpr int window = 192;                // cells that are solved and stay
-constexpr int look_ahead = 48;             // cells behind them that are solved with them, at least: as far as braking would reach
-constexpr int beside = 10;                 // cells on both sides that are solved again with one that was beyond a limit
+constexpr double slow_share = 0.02;            // of v2: what goes on where a former plan stopped
+constexpr double braking_share = 0.7;          // of the deceleration and the jerk, to a lowered velocity
+constexpr double guessed_share = 0.75;         // the same where the search begins: a little below
+constexpr double guessed_below = 0.97;         // of that velocity
+constexpr double below_factor = 1 - 6e-5;      // of a lowered velocity: what is left of a soft cap is below it
+constexpr double over_ramp = 1.0005;           // of v2 on that braking: what cells cannot follow
+constexpr int window = 192;                    // cells that are solved and stay
+constexpr int look_ahead = 48;                 // cells behind them that are solved with them, at least: as far as braking would reach
+constexpr std::size_t most_taken_over = 3000;  // cells of a former plan, which was cut into pieces
+constexpr int beside = 10;                     // cells on both sides that are solved again with one that was beyond a limit
 
 /// x^(2/3).
 double two_thirds(double x) {
@@ -35,22 +36,6 @@ CellShare less(const CellShare& a, const CellShare& b) {
 }
 
 }  // namespace
-
-/// The greatest v2 at the moving end of a piece at constant jerk from rest (or to rest) over `length`: velocity, acceleration and jerk on it
-/// grow with the powers 1/2, 1 and 3/2 of it, so one motion says it for all.
-double RunPlanner::rest_square(double at, double length, CurveSide side) const {
-    LimitUse use;
-    constexpr int samples = 24;
-    const double sign = side == CurveSide::after ? 1 : -1;
-    for (int i = 0; i <= samples; ++i) {
-        const double time = static_cast<double>(i) / samples, s = at + sign * time * time * time * length;
-        const PathMotion m{s, time * time, sign * 2 / (3 * length) * time, 2 / (9 * length * length)};
-        use.widen(limit_use(curve_->at(s, side), limits_, hard_factor(), m));
-    }
-    // Between the samples, where the curve bends.
-    const double margin = curve_->feature(at, side) < unlimited ? 1 - 3e-3 : 1 - 1e-4;
-    return margin * std::min({1 / (use.velocity * use.velocity), 1 / use.acceleration, 1 / two_thirds(use.jerk)});
-}
 
 void RunPlanner::add_cell(int cell) {
     const auto c = static_cast<std::size_t>(cell);
@@ -70,11 +55,9 @@ void RunPlanner::add_cell(int cell) {
             // Above a lowered velocity factor a moving beginning may be; it is left as soon as the limits allow.
             const double wanted = below_factor * p.path.velocity * task_.velocity_factor;
             if (moving && task_.velocity_factor < 1 && wanted < unlimited)
-                problem_.add_soft_cap(std::max(wanted * wanted, ramp_.empty() ? 0 : ramp_[3 * c + static_cast<std::size_t>(place)]));
-            if (cell == 0 && place == CellPlace::begin)
-                square = std::min(square, rest_square(task_.from, grid_.start.rest_length, CurveSide::after));
-            if (cell + 1 == problem_.cells() && place == CellPlace::end)
-                square = std::min(square, rest_square(task_.to, grid_.end.rest_length, CurveSide::before));
+                problem_.add_soft_cap(wanted * wanted * std::max(1.0, ramp_.empty() ? 0 : ramp_[3 * c + static_cast<std::size_t>(place)]));
+            if (cell == 0 && place == CellPlace::begin) square = std::min(square, begin_square_);
+            if (cell + 1 == problem_.cells() && place == CellPlace::end) square = std::min(square, end_square_);
             if (square < unlimited) problem_.add_cap(square);
         }
         // What lies between the nodes shows when all is looked at.
@@ -105,6 +88,11 @@ void RunPlanner::make_problem() {
     check_.sample(*curve_, limits_, grid_.nodes, grid_.breaks);
     problem_.begin(grid_.nodes, grid_.start, grid_.end, untouched);
     make_ramp();
+    const auto most = [&](double at, double length, CurveSide side) {
+        return rest_.greatest_square(*curve_, limits_, hard_factor(), at, length, side);
+    };
+    begin_square_ = from_rest() ? most(task_.from, grid_.start.rest_length, CurveSide::after) : unlimited;
+    end_square_ = most(task_.to, grid_.end.rest_length, CurveSide::before);
     for (int i = 0; i < problem_.cells(); ++i) add_cell(i);
     for (int i = 0; i < problem_.cells(); ++i) {
         const CellShare& share = shares_[static_cast<std::size_t>(i)];
@@ -119,10 +107,16 @@ void RunPlanner::make_ramp() {
     ramp_.clear();
     if (task_.velocity <= 0 || task_.velocity_factor >= 1) return;
     const Braking braking = braking_to_factor(1, braking_share);
+    // Who is below it, and has been told before, does not come above it.
+    const double wanted = wanted_first();
+    if (!slower_ && task_.velocity <= wanted) return;
     const double way = braking.way();
     if (!(way > 0)) return;
     BrakingByWay by_way(braking);
-    const auto square = [&](double s) { return s < task_.from + way ? over_ramp * std::pow(by_way.velocity(s - task_.from), 2) : 0; };
+    // As parts of what is wanted: where the path is slower by itself, so is the ramp.
+    const auto square = [&](double s) {
+        return s < task_.from + way ? over_ramp * std::pow(by_way.velocity(s - task_.from) / wanted, 2) : 0;
+    };
     double first = square(grid_.nodes.front());
     for (std::size_t i = 0; i + 1 < grid_.nodes.size() && first > 0; ++i) {
         const double middle = square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2), last = square(grid_.nodes[i + 1]);
@@ -191,8 +185,7 @@ void RunPlanner::first_guess() {
 /// A halt: the grid is its own, for the former plan's cells are as long as suits who goes on. The first guess is braking in time, along a straight line.
 void RunPlanner::brake() {
     first_guess();
-    const AlongLimits l = along_limits(check_.begin(0), limits_, 1);
-    const Braking braking(task_.velocity, task_.acceleration, task_.halt_share * l.deceleration, task_.halt_share * l.jerk);
+    const Braking braking = halt_braking();
     const double stretched = braking.way() > 0 ? (task_.to - task_.from) / braking.way() : 1;
     BrakingByWay by_way(braking);
     const auto square = [&](double s) { return std::pow(by_way.velocity((s - task_.from) / stretched), 2); };
@@ -203,12 +196,23 @@ void RunPlanner::brake() {
     }
 }
 
-/// To this part of a lowered velocity, where the beginning is above it, with this share of the limits.
-Braking RunPlanner::braking_to_factor(double part, double share) const {
+/// As along a straight line, with its share of the limits where it begins.
+Braking RunPlanner::halt_braking() const {
+    const AlongLimits l = along_limits(curve_->at(task_.from, CurveSide::after), limits_, 1);
+    return {task_.velocity, task_.acceleration, task_.halt_share * l.deceleration, task_.halt_share * l.jerk};
+}
+
+/// What a lowered velocity factor allows where the task begins.
+double RunPlanner::wanted_first() const {
     const TimedCurvePoint p = curve_->at(task_.from, CurveSide::after);
-    const AlongLimits l = along_limits(p, limits_, 1);
-    const double wanted = std::min(l.velocity, p.path.velocity) * task_.velocity_factor;
-    return {task_.velocity, task_.acceleration, share * l.deceleration, share * l.jerk, std::min(part * wanted, task_.velocity)};
+    return std::min(along_limits(p, limits_, 1).velocity, p.path.velocity) * task_.velocity_factor;
+}
+
+/// To this part of it, where the beginning is above it, with this share of the limits.
+Braking RunPlanner::braking_to_factor(double part, double share) const {
+    const AlongLimits l = along_limits(curve_->at(task_.from, CurveSide::after), limits_, 1);
+    const double own = task_.softness * share;
+    return {task_.velocity, task_.acceleration, own * l.deceleration, own * l.jerk, std::min(part * wanted_first(), task_.velocity)};
 }
 
 /// From a moving state: the cells of the former plan as long as it does not brake for its end for good, and its v2 as the first guess. Where
@@ -218,7 +222,8 @@ void RunPlanner::take_over(const RunShape& former) {
     const auto begin = std::lower_bound(former.nodes.begin(), former.nodes.end(), task_.from - hair);
     const auto from = static_cast<std::size_t>(begin - former.nodes.begin());
     if (begin == former.nodes.end()) return;
-    const bool same_end = std::fabs(task_.to - former.end)<1e-9 * whole, own_cells = task_.brake_way> 0;
+    const bool same_end =
+        std::fabs(task_.to - former.end)<1e-9 * whole, own_cells = task_.brake_way> 0 || former.nodes.size() - from > most_taken_over;
     std::size_t kept = former.nodes.size() - 1;
     if (!same_end && !own_cells) {
         while (kept > from && (former.squares[kept] <= former.squares[kept - 1] || former.nodes[kept] > grid_.nodes.back())) --kept;
@@ -244,29 +249,50 @@ void RunPlanner::take_over(const RunShape& former) {
         const double x = (s - former.nodes[cell]) / (former.nodes[cell + 1] - former.nodes[cell]), y = 1 - x;
         return y * y * former.squares[cell] + 2 * x * y * former.middles[cell] + x * x * former.squares[cell + 1];
     };
-    const double wanted_first = std::min(along_limits(check_.begin(0), limits_, 1).velocity, check_.begin(0).path.velocity);
-    const auto wanted_below = [&](std::size_t i) { return check_.middle(i).path.velocity < 0.9 * wanted_first; };
+    const double first_wanted = wanted_first();
+    const auto wanted_below = [&](std::size_t i) { return check_.middle(i).path.velocity * task_.velocity_factor < 0.9 * first_wanted; };
     // A lowered velocity factor: braking to what is allowed.
     const Braking braking = braking_to_factor(guessed_below, guessed_share);
     BrakingByWay by_way(braking);
-    const bool slower = task_.velocity_factor < former.velocity_factor;
-    const auto braked_square = [&](double s) { return slower ? std::pow(by_way.velocity(s - task_.from), 2) : unlimited; };
+    const auto braked_square = [&](double s) { return slower_ ? std::pow(by_way.velocity(s - task_.from), 2) : unlimited; };
     first_window_ = 0;
     for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
         const double half = (grid_.nodes[i] + grid_.nodes[i + 1]) / 2;
         const double first = former_square(grid_.nodes[i]), middle = former_square(half), last = former_square(grid_.nodes[i + 1]);
         double lowered = std::max(braked_square(half), middles_[i]);
         // Behind that braking as well, where the path itself is slower.
-        if (slower && half > task_.from + braking.way() && wanted_below(i))
+        if (slower_ && half > task_.from + braking.way() && wanted_below(i))
             lowered = std::min(lowered, guessed_below * guessed_below * middles_[i]);
         middles_[i] = std::min(std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]), lowered);
         if (middle > 0) first_window_ = static_cast<int>(i) + 1;
     }
+    if (!slower_) return;
+    // Where a faster part of the path joins a slower one, both cells have a part of the node between them.
+    for (std::size_t i = 1; i + 1 < grid_.nodes.size(); ++i) {
+        if (grid_.nodes[i] <= task_.from + braking.way()) continue;
+        const double wanted =
+            guessed_below * task_.velocity_factor * std::min(check_.end(i - 1).path.velocity, check_.begin(i).path.velocity);
+        if (problem_.node(static_cast<int>(i), middles_) <= wanted * wanted) continue;
+        for (double* middle : {&middles_[i - 1], &middles_[i]}) *middle = std::min(*middle, wanted * wanted);
+    }
+}
+
+/// A cell behind the way down to a lowered velocity, which is there or above it by little. What is allowed there is no limit: if it cannot be had in
+/// some rounds, a hair above it is borne.
+bool RunPlanner::keeps_to_wanted(std::size_t c) const {
+    if (splits_left_ == 0 || from_rest() || task_.velocity_factor >= 1 || (!ramp_.empty() && ramp_[3 * c] > 0)) return false;
+    constexpr double little = 1.04;  // of v2
+    const auto cell = static_cast<int>(c);
+    const double most = std::max({problem_.node(cell, middles_), middles_[c], problem_.node(cell + 1, middles_)});
+    const double wanted =
+        task_.velocity_factor * std::min({check_.begin(c).path.velocity, check_.middle(c).path.velocity, check_.end(c).path.velocity});
+    return most < little * wanted * wanted;
 }
 
 CellUse RunPlanner::use_of_cell(std::size_t c) {
     const auto cell = static_cast<int>(c);
-    return check_.use(c, {problem_.node(cell, middles_), middles_[c], problem_.node(cell + 1, middles_)}, hard_factor());
+    return check_.use(c, {problem_.node(cell, middles_), middles_[c], problem_.node(cell + 1, middles_)},
+                      keeps_to_wanted(c) ? task_.velocity_factor : hard_factor());
 }
 
 /// Near the end of a search: where a limit will be crossed between nodes by as much as it is used there more than at them, less is allowed at once.
@@ -294,11 +320,15 @@ LimitUse RunPlanner::verify(const CellRange& range) {
     LimitUse whole;
     for (int i = std::max(range.first, 0); i < std::min(range.last, problem_.cells()); ++i) {
         const auto c = static_cast<std::size_t>(i);
-        const LimitUse use = use_of_cell(c).peak;
+        LimitUse use = use_of_cell(c).peak;
+        // The pieces at rest grow with the v2 that they meet.
+        if (i == 0 && from_rest()) use.velocity = std::max(use.velocity, std::sqrt(problem_.node(0, middles_) / begin_square_));
+        if (i + 1 == problem_.cells()) use.velocity = std::max(use.velocity, std::sqrt(problem_.node(i + 1, middles_) / end_square_));
         whole.widen(use);
         uses_[c] = use;
         if (use.inside()) continue;
         beyond_.push_back(i);
+        if (keeps_to_wanted(c)) problem_.hold(i);
         // Far beyond, the cell is too long for what happens in it.
         CellShare& share = shares_[c];
         const double most = std::max({use.velocity, use.acceleration, use.jerk}),
@@ -402,20 +432,19 @@ bool RunPlanner::sweep(SpeedGuess guess, RunPlan& out) {
 }
 
 /// What a search gains is compared with the time of all that it looks at. Beside a long cruise a slow moment behind the braking to a lowered velocity
-/// counts nothing there: so that is looked at by itself.
-bool RunPlanner::settle_braking(RunPlan& out) {
-    if (task_.brake_way <= 0) return true;
+/// counts nothing there: so that is looked at by itself. What cannot be bettered stays as it is.
+void RunPlanner::settle_braking(RunPlan& out) {
+    if (task_.brake_way <= 0) return;
     for (const double share : {20.0, 4.0, 1.5}) {
         const auto behind = std::upper_bound(grid_.nodes.begin(), grid_.nodes.end(), task_.from + share * task_.brake_way);
         const int last = std::min(static_cast<int>(behind - grid_.nodes.begin()), problem_.cells());
-        if (last < problem_.cells() && !solve({0, last}, SpeedGuess::near, nullptr, out)) return false;
+        if (last < problem_.cells()) (void)solve({0, last}, SpeedGuess::near, nullptr, out);
     }
-    return true;
 }
 
 /// The same of the ramps at both ends of a long run: some tenths of a second that are lost there are little of it, but much to who waits for it to move.
-bool RunPlanner::settle_ramps(RunPlan& out) {
-    if (grid_.coarse) return true;
+void RunPlanner::settle_ramps(RunPlan& out) {
+    if (grid_.coarse) return;
     const int n = problem_.cells();
     double whole = 0;
     for (int c = 0; c < n; ++c)
@@ -438,10 +467,9 @@ bool RunPlanner::settle_ramps(RunPlan& out) {
     // From many ramps to some: what lies beside is as it was found before.
     for (const double share : {64.0, 8.0, 2.0}) {
         const CellRange first{0, cell_at(task_.from + share * up)}, last{cell_at(task_.to - share * down) - 1, n};
-        if (up > 0 && first.last < n && !solve(first, SpeedGuess::near, nullptr, out)) return false;
-        if (down > 0 && last.first > 0 && last.first < n && !solve(last, SpeedGuess::near, nullptr, out)) return false;
+        if (up > 0 && first.last < n) (void)solve(first, SpeedGuess::near, nullptr, out);
+        if (down > 0 && last.first > 0 && last.first < n) (void)solve(last, SpeedGuess::near, nullptr, out);
     }
-    return true;
 }
 
 /// Solves again around the cells that are beyond a limit, until none is.
@@ -483,9 +511,15 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     beyond_.clear();
     split_.clear();
     splits_left_ = split_rounds;
-    if (former != nullptr && task.velocity > 0 && task.halt_share <= 0 && task.velocity_factor < former->velocity_factor) {
+    slower_ = former != nullptr && task.velocity_factor < former->velocity_factor;
+    if (slower_ && task.velocity > 0 && task.halt_share <= 0) {
         const double way = braking_to_factor(guessed_below, braking_share).way();
         if (way > 0 && way < 0.9 * (task.to - task.from)) task_.brake_way = way;
+    }
+    if (task.halt_share > 0 && task.velocity > 0) {
+        const Braking braking = halt_braking();
+        task_.halt_ramp = braking.ramp_way();
+        task_.halt_last = braking.last_way();
     }
     grid_.make(*curve_, limits_, task_,
                former != nullptr && former->coarse && task.halt_share <= 0 ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
@@ -502,7 +536,11 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     }
     uses_.assign(middles_.size(), {});
     ++out.rounds;
-    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out) && settle_braking(out) && settle_ramps(out);
+    const bool solved = sweep(from_rest() ? SpeedGuess::inside : SpeedGuess::outside, out);
+    if (solved) {
+        settle_braking(out);
+        settle_ramps(out);
+    }
     out.use = verify({0, problem_.cells()});
     out.found = solved && mend(out);
     LimitUse use;

@@ -10,6 +10,7 @@
 #include "axes/path_time/cell_grid.hpp"
 #include "axes/path_time/curve.hpp"
 #include "axes/path_time/limit_use.hpp"
+#include "axes/path_time/rest_check.hpp"
 #include "axes/path_time/speed_problem.hpp"
 #include "axes/path_time/time_piece.hpp"
 
@@ -58,19 +59,21 @@ private:
     void take_over(const RunShape& former);
     void brake();
     void make_ramp();
+    [[nodiscard]] Braking halt_braking() const;
+    [[nodiscard]] double wanted_first() const;
     [[nodiscard]] Braking braking_to_factor(double part, double share) const;
     bool sweep(SpeedGuess guess, RunPlan& out);
     bool solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out);
     void come_near(const CellRange& cells, const std::vector<double>& middles) override;
+    [[nodiscard]] bool keeps_to_wanted(std::size_t cell) const;
     [[nodiscard]] CellUse use_of_cell(std::size_t cell);
     LimitUse verify(const CellRange& range);
-    bool settle_braking(RunPlan& out);
-    bool settle_ramps(RunPlan& out);
+    void settle_braking(RunPlan& out);
+    void settle_ramps(RunPlan& out);
     bool mend(RunPlan& out);
     void push_share(int cell);
     void split_cells();
     void slow_down(const LimitUse& use);
-    [[nodiscard]] double rest_square(double at, double length, CurveSide side) const;
     /// False: it would last too long to be a motion.
     [[nodiscard]] bool make_pieces(RunPlan& out) const;
     [[nodiscard]] bool from_rest() const noexcept { return grid_.start.rest_length > 0; }
@@ -82,14 +85,17 @@ private:
     RunTask task_;
     CellGrid grid_;
     CellCheck check_;
+    RestCheck rest_;
     SpeedProblem problem_;
     std::vector<double> middles_;
-    std::vector<double> ramp_;    // v2 on the way down to a lowered velocity, three a cell as the problem has places; empty: there is none
-    std::vector<double> reach_;   // of braking, from each cell
-    std::vector<LimitUse> uses_;  // of the cells, as verified
-    std::vector<CellShare> shares_;  // what share of each limit a cell may use
-    std::vector<int> beyond_;        // cells that use more than they may
+    std::vector<double> ramp_;  // v2 on the way down to a lowered velocity, three a cell as the problem has places; empty: there is none
+    double begin_square_ = 0, end_square_ = 0;  // the greatest v2 where the pieces at rest end or begin
+    std::vector<double> reach_;                 // of braking, from each cell
+    std::vector<LimitUse> uses_;                // of the cells, as verified
+    std::vector<CellShare> shares_;             // what share of each limit a cell may use
+    std::vector<int> beyond_;                   // cells that use more than they may
     std::vector<int> split_;
+    bool slower_ = false;   // the velocity factor is lower than that of the former plan
     int splits_left_ = 0;   // rounds that may still do so
     int first_window_ = 0;  // cells that have to be solved at once
 };

@@ -195,9 +195,12 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
                 if (used >= limit * (1 - hair)) bound = used + beyond * std::max(limit, used);
                 if (room == Room::less) bound = std::min(bound, before);
                 if (room == Room::half) bound = std::max(limit, used + 0.5 * (before - used));
+                // What the cells beside the range do alone stays as it is, whatever it is.
+                const bool beside = (static_cast<int>(c) == range.first - 1 && !(x.g2[lane] != 0)) ||
+                                    (static_cast<int>(c) == range.last && !(x.g0[lane] != 0));
                 x.bound[lane] = bound;
                 if (x.kind[lane] == Bound::soft_cap && room == Room::first && holds_ && bound <= limit) x.kind[lane] = Bound::held_cap;
-                if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && bound <= limit;
+                if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && (beside || bound <= limit);
                 else soft_beyond_ += bound / limit - 1;
                 const double inverse = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
                 x.z[lane] *= inverse / x.inverse[lane];  // as central as before
@@ -221,6 +224,14 @@ bool SpeedProblem::let_go(const CellRange& range) {
                 }
     });
     return any;
+}
+
+void SpeedProblem::hold(int cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    for (std::size_t k = cell > 0 ? 3 * c - 1 : 0; k < 3 * c + 3; ++k)  // a node's caps are at the end of the cell before, as a rule
+        for (int i = 0; i < places_[k].plain_count; ++i)
+            for (Bound& kind : plain_[static_cast<std::size_t>(places_[k].plain + i)].kind)
+                if (kind == Bound::soft_cap) kind = Bound::held_cap;
 }
 
 /// Multipliers on the central path of mu.

@@ -84,6 +84,8 @@ public:
     /// The cells of the range from `middles` (> 0, feasible or not) to the best; the others stay as they are. All do where no way in is found.
     SpeedOutcome solve(std::vector<double>& middles, const CellRange& range, SpeedGuess guess, SpeedWitness* witness);
 
+    /// From now on the soft caps of the cell hold as the others do, until a search finds no way into them.
+    void hold(int cell);
     [[nodiscard]] int cells() const noexcept { return static_cast<int>(lengths_.size()); }
     /// v2 at the beginning of cell i (or at the end of the last) for these middles.
     [[nodiscard]] double node(int i, const std::vector<double>& middles) const noexcept;

@@ -1,0 +1,47 @@
+#pragma once
+// What samples of a curve say of what lies between them.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "axes/path_time/curve.hpp"
+
+namespace taktwerk::axes {
+
+/// The greatest |x|, x as parts of a limit, with what a parabola through each three samples reaches between them, and what it may be wrong by: a
+/// cubic's part. Where all samples are below 0.9, what lies between them does not count.
+[[nodiscard]] inline double sampled_peak(std::span<const double> x) noexcept {
+    constexpr double looks_closer = 0.9, cubic = 0.065;  // the greatest |t (t^2 - 1)|/6 on [-1, 1]
+    double most = 0;
+    for (const double v : x) most = std::max(most, std::fabs(v));
+    if (most < looks_closer) return most;
+    for (std::size_t i = 2; i < x.size(); ++i) {
+        const double bend = x[i] - 2 * x[i - 1] + x[i - 2], slope = x[i] - x[i - 2];
+        if (std::fabs(slope) >= 2.2 * std::fabs(bend)) continue;
+        double third = 0;
+        if (i > 2) third = std::fabs(bend - (x[i - 1] - 2 * x[i - 2] + x[i - 3]));
+        if (i + 1 < x.size()) third = std::max(third, std::fabs(x[i + 1] - 2 * x[i] + x[i - 1] - bend));
+        most = std::max(most, std::fabs(x[i - 1] - slope * slope / (8 * bend)) + cubic * third);
+    }
+    return most;
+}
+
+/// A cusp, or a joint that whips round: narrower than the points lie apart. Then q' changes by more than three tenths from one to the next.
+[[nodiscard]] inline bool turns_between(std::span<const TimedCurvePoint> points, std::size_t axes) noexcept {
+    constexpr double unresolved = 0.3;
+    double before = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        double size = 0, change = 0;
+        for (std::size_t i = 0; i < axes; ++i) {
+            size += points[k].first[i] * points[k].first[i];
+            if (k > 0) change += std::pow(points[k].first[i] - points[k - 1].first[i], 2);
+        }
+        if (k > 0 && change > unresolved * unresolved * std::max(size, before)) return true;
+        before = size;
+    }
+    return false;
+}
+
+}  // namespace taktwerk::axes
