@@ -80,7 +80,7 @@ bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthe
         if (!goes || !(task.to < furthest)) return false;
         ++tries_;
         planner_.plan(curve, limits_, task, plan_, former);
-        if (plan_.found) return true;
+        if (plan_.found && plan_.pieces.size() <= TimeStretch::most_pieces) return true;
     }
     return false;
 }

@@ -20,6 +20,7 @@ constexpr double guessed_share = 0.75;         // the same where the search begi
 constexpr double guessed_below = 0.97;         // of that velocity
 constexpr double below_factor = 1 - 6e-5;      // of a lowered velocity: what is left of a soft cap is below it
 constexpr double over_ramp = 1.0005;           // of v2 on that braking: what cells cannot follow
+constexpr double over_halt = 0.02;            // of v2 where it begins, that a halt may be above braking as along a line
 constexpr int window = 192;                    // cells that are solved and stay
 constexpr int look_ahead = 48;                 // cells behind them that are solved with them, at least: as far as braking would reach
 constexpr std::size_t most_taken_over = 3000;  // cells of a former plan, which was cut into pieces
@@ -56,6 +57,8 @@ void RunPlanner::add_cell(int cell) {
             const double wanted = below_factor * p.path.velocity * task_.velocity_factor;
             if (moving && task_.velocity_factor < 1 && wanted < unlimited)
                 problem_.add_soft_cap(wanted * wanted * std::max(1.0, ramp_.empty() ? 0 : ramp_[3 * c + static_cast<std::size_t>(place)]));
+            if (!halt_.empty())
+                square = std::min(square, halt_[3 * c + static_cast<std::size_t>(place)] + over_halt * task_.velocity * task_.velocity);
             if (cell == 0 && place == CellPlace::begin) square = std::min(square, begin_square_);
             if (cell + 1 == problem_.cells() && place == CellPlace::end) square = std::min(square, end_square_);
             if (square < unlimited) problem_.add_cap(square);
@@ -88,6 +91,7 @@ void RunPlanner::make_problem() {
     check_.sample(*curve_, limits_, grid_.nodes, grid_.breaks);
     problem_.begin(grid_.nodes, grid_.start, grid_.end, untouched);
     make_ramp();
+    make_halt();
     const auto most = [&](double at, double length, CurveSide side) {
         return rest_.greatest_square(*curve_, limits_, hard_factor(), at, length, side);
     };
@@ -185,14 +189,20 @@ void RunPlanner::first_guess() {
 /// A halt: the grid is its own, for the former plan's cells are as long as suits who goes on. The first guess is braking in time, along a straight line.
 void RunPlanner::brake() {
     first_guess();
-    const Braking braking = halt_braking();
-    const double stretched = braking.way() > 0 ? (task_.to - task_.from) / braking.way() : 1;
-    BrakingByWay by_way(braking);
-    const auto square = [&](double s) { return std::pow(by_way.velocity((s - task_.from) / stretched), 2); };
-    for (std::size_t i = 0; i < middles_.size(); ++i) {
-        const double begin = grid_.nodes[i], end = grid_.nodes[i + 1];
-        const double first = square(begin), middle = square((begin + end) / 2), last = square(end);
-        middles_[i] = std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]);
+    for (std::size_t i = 0; i < middles_.size(); ++i) middles_[i] = std::max(halt_[3 * i + 1], slow_share * middles_[i]);
+}
+
+/// v2 of that braking. Nothing is far above it: who only has to be at rest somewhere would go on as it is, and brake harder then.
+void RunPlanner::make_halt() {
+    halt_.clear();
+    if (task_.halt_share <= 0 || from_rest()) return;
+    BrakingByWay by_way(halt_braking());
+    const auto square = [&](double s) { return std::pow(by_way.velocity(s - task_.from), 2); };
+    double first = square(grid_.nodes.front());
+    for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
+        const double middle = square((grid_.nodes[i] + grid_.nodes[i + 1]) / 2), last = square(grid_.nodes[i + 1]);
+        halt_.insert(halt_.end(), {first, 2 * middle - (first + last) / 2, last});
+        first = last;
     }
 }
 
@@ -204,8 +214,7 @@ Braking RunPlanner::halt_braking() const {
 
 /// What a lowered velocity factor allows where the task begins.
 double RunPlanner::wanted_first() const {
-    const TimedCurvePoint p = curve_->at(task_.from, CurveSide::after);
-    return std::min(along_limits(p, limits_, 1).velocity, p.path.velocity) * task_.velocity_factor;
+    return along_limits(curve_->at(task_.from, CurveSide::after), limits_, task_.velocity_factor).velocity;
 }
 
 /// To this part of it, where the beginning is above it, with this share of the limits.

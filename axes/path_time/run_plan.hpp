@@ -59,6 +59,7 @@ private:
     void take_over(const RunShape& former);
     void brake();
     void make_ramp();
+    void make_halt();
     [[nodiscard]] Braking halt_braking() const;
     [[nodiscard]] double wanted_first() const;
     [[nodiscard]] Braking braking_to_factor(double part, double share) const;
@@ -89,6 +90,7 @@ private:
     SpeedProblem problem_;
     std::vector<double> middles_;
     std::vector<double> ramp_;  // v2 on the way down to a lowered velocity, three a cell as the problem has places; empty: there is none
+    std::vector<double> halt_;  // v2 of a halt as along a line, likewise
     double begin_square_ = 0, end_square_ = 0;  // the greatest v2 where the pieces at rest end or begin
     std::vector<double> reach_;                 // of braking, from each cell
     std::vector<LimitUse> uses_;                // of the cells, as verified
