@@ -168,6 +168,7 @@ RunCurve::Seen GroupPlanner::corner_of(const Run& run, const GroupOrder& move, c
     corner.run.carried = move.place.carried;
     corner.run.configuration = end_.configuration;
     corner.run.before = run.curve.seen.back().run.section.command;
+    corner.run.way_before = run.curve.seen.back().run.way;
     corner.run.way = shape.element.length();
     corner.run.rest = run.curve.path.sections().back().length;
     corner.run.to = shape.end.members;

@@ -296,7 +296,7 @@ void PathRun::look() noexcept {
     line_ = run.line;
     number_ = run.number;
     arrived_ = in.player && in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
-    length_ = before ? run.section.length / 2 : run.way;
+    length_ = before ? run.way_before : run.way;
     remaining_ = before              ? run.section.begin + run.section.length / 2 - s
                  : run.section.blend ? run.section.end() - s + run.rest
                                      : std::max(run.corner - s, 0.0);
