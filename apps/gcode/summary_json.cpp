@@ -35,8 +35,12 @@ GcodeJson program_json(const CheckedProgram& program, const std::string& name) {
     if (summary.spindle().used) out["spindle_per_min"] = {{"least", summary.spindle().least}, {"most", summary.spindle().most}};
     out["tools"] = summary.tools();
     out["dwells"] = {{"count", summary.dwells().count}, {"seconds", summary.dwells().seconds}};
-    out["acknowledged"] = {
-        {"program_stops", count(Kind::program_stop)}, {"tool_changes", count(Kind::tool_change)}, {"user", count(Kind::user)}};
+    out["acknowledged"] = {{"program_stops", count(Kind::program_stop)},
+                           {"optional_stops", count(Kind::optional_stop)},
+                           {"tool_changes", count(Kind::tool_change)},
+                           {"spindle", count(Kind::spindle_clockwise) + count(Kind::spindle_counter) + count(Kind::spindle_off)},
+                           {"coolant", count(Kind::mist) + count(Kind::flood) + count(Kind::coolant_off)},
+                           {"user", count(Kind::user)}};
     out["left_out"] = program.counts.left_out;
     out["least_seconds"] = summary.least_seconds();
     out["messages"] = program.messages;

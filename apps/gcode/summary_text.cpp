@@ -62,7 +62,11 @@ void put_waits(Rows& rows, const gcode::ProgramSummary& summary) {
         if (const auto count = summary.handshakes()[static_cast<std::size_t>(kind)]; count > 0)
             waits += fmt::format("{}{} x {}", waits.empty() ? "" : ", ", count, what);
     };
-    add(Handshake::Kind::program_stop, "M0"), add(Handshake::Kind::tool_change, "M6"), add(Handshake::Kind::user, "M100 to M199");
+    using enum Handshake::Kind;
+    add(program_stop, "M0"), add(optional_stop, "M1"), add(tool_change, "M6");
+    add(spindle_clockwise, "M3"), add(spindle_counter, "M4"), add(spindle_off, "M5");
+    add(mist, "M7"), add(flood, "M8"), add(coolant_off, "M9");
+    add(user, "M100 to M199");
     if (!waits.empty()) rows.add("waits", waits);
 }
 

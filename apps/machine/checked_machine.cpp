@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "apps/machine/load.hpp"
+#include "apps/machine/path_remarks.hpp"
 #include "core/installed_memory.hpp"
 #include "hmi_bridge/modbus/offer.hpp"
 #include "hmi_bridge/modbus/shown_value.hpp"
@@ -36,6 +37,8 @@ std::variant<CheckedMachine, std::vector<Error>> check_machine(const std::string
     of_programs.insert(of_programs.end(), of_views.begin(), of_views.end());
     if (!of_programs.empty()) return of_programs;
     out.remarks = runtime::remarks(out.config, layout, std::thread::hardware_concurrency());
+    const auto of_paths = path_remarks(out.config.paths);
+    out.remarks.insert(out.remarks.end(), of_paths.begin(), of_paths.end());
     if (auto large = runtime::recording_remark(out.config.recording.depth, out.machine->signals().bytes(), installed_memory()))
         out.remarks.push_back(std::move(*large));
     return out;

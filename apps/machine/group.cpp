@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/machine/override_part.hpp"
 #include "apps/machine/remote.hpp"
-#include "config/reading/unit_text.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -36,12 +36,12 @@ int send(const GroupOrder& order, const GroupWord& word) {
 }
 
 int set_override(const GroupOrder& order) {
-    const auto percent = config::value_in(order.percent, "%");
-    if (!percent) return report(order.remote, percent.error());
+    const auto part = override_part(order.percent);
+    if (!part) return report(order.remote, part.error());
     return with_machine(order.remote, [&](hmi::Client& client) {
-        const auto answer = client.request({{"cmd", "group_override"}, {"group", order.group}, {"value", *percent / 100}});
+        const auto answer = client.request({{"cmd", "group_override"}, {"group", order.group}, {"value", *part}});
         if (!answer) return report(order.remote, answer.error());
-        return report(order.remote, fmt::format("override of {}: {:g} %", order.group, *percent));
+        return report(order.remote, fmt::format("override of {}: {:g} %", order.group, 100 * *part));
     });
 }
 

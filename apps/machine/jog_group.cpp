@@ -85,6 +85,9 @@ std::string place_of(const Json& group) {
 /// What keeps it slower than it was told to.
 std::string held_back(const Json& group, const std::string& frame) {
     const auto limiter = group.at("limiter").get<std::string>();
+    // Below a millionth it stands, and nothing holds a velocity back that is none.
+    if (hmi::number_of(group.at("override")) * hmi::number_of(group.at("operators_override")) < 1e-6)
+        return "; it does not move: the override is 0 % (`taktwerk override 100`, `taktwerk group override`)";
     if (limiter == "setup_velocity") return "; slower than asked: set-up mode holds the tool's point down (setup_velocity of the group)";
     if (limiter == "override_factor") return "; slower than asked: the override holds it down (`taktwerk group override`)";
     // Of a ramp every axis may be at its limit.

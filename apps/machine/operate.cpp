@@ -11,6 +11,7 @@
 #include "apps/machine/group.hpp"
 #include "apps/machine/held_velocity.hpp"
 #include "apps/machine/jog.hpp"
+#include "apps/machine/override_part.hpp"
 #include "apps/machine/remote.hpp"
 #include "apps/machine/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
@@ -156,16 +157,25 @@ int start(const Order& order, hmi::Client& client) {
             return report(order.remote, Error{"command.not_possible_now", "", "this machine has no program",
                                               "Move its axes with `taktwerk jog`, or add a program to the machine file."});
     }
-    std::vector<std::string> running;
-    if (const auto state = state_of(client))
+    std::vector<std::string> running, waiting;
+    if (const auto state = state_of(client)) {
         for (const auto& program : state->at("programs"))
             if (program.at("state") == "running") running.push_back(program.at("name").get<std::string>());
+        for (const auto& alarm : state->at("alarms"))
+            if (alarm.value("name", "") == "program_waits") waiting.push_back(alarm.value("source", ""));
+    }
+    const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
     std::string told;
     for (const auto& program : programs) {
-        const bool runs = std::find(running.begin(), running.end(), program) != running.end();
         if (const auto answer = client.request({{"cmd", "program_start"}, {"program", program}}); !answer)
             return report(order.remote, answer.error());
-        told += fmt::format("{}program {}: {}", told.empty() ? "" : "; ", program, runs ? "runs already" : "started");
+        // What it does there is no small thing: its axes get their power back.
+        const char* what = has(waiting, "program " + program) ? "goes on after the emergency stop"
+                           : has(running, program)            ? "runs already"
+                                                              : "started";
+        told += fmt::format("{}program {}: {}", told.empty() ? "" : "; ", program, what);
     }
     return report(order.remote, told);
 }
@@ -240,11 +250,11 @@ int unforce(const Order& order, hmi::Client& client) {
                 fmt::format("{} {} is its own again", *direction, order.target));
 }
 int set_override(const Order& order, hmi::Client& client) {
-    const auto percent = config::value_in(order.value, "%");
-    if (!percent) return report(order.remote, percent.error());
+    const auto part = override_part(order.value);
+    if (!part) return report(order.remote, part.error());
     const auto axis = order.target.empty() ? std::string("all") : order.target;
-    return send(order, client, {{"cmd", "override"}, {"axis", axis}, {"value", *percent / 100}},
-                fmt::format("override of {}: {:g} %", axis, *percent));
+    return send(order, client, {{"cmd", "override"}, {"axis", axis}, {"value", *part}},
+                fmt::format("override of {}: {:g} %", axis, 100 * *part));
 }
 int acknowledge(const Order& order, hmi::Client& client) { return send(order, client, {{"cmd", "acknowledge"}}, "alarms acknowledged"); }
 int shut_down(const Order& order, hmi::Client& client) {

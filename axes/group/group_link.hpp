@@ -68,6 +68,11 @@ struct GroupVerdict {
     std::uint8_t jog_place = 0;     ///< JogEnd::member_limit: whose, by rank
 };
 
+/// In velocity, acceleration or jerk.
+[[nodiscard]] constexpr bool asks_for_more(const Override& planned, const Override& wished) noexcept {
+    return planned.velocity > wished.velocity || planned.acceleration > wished.acceleration || planned.jerk > wished.jerk;
+}
+
 struct RunTrack {
     /// Of all moves that can wait, each with its blend, twice over.
     static constexpr std::size_t usual_sections = 80;
@@ -77,8 +82,10 @@ struct RunTrack {
     const std::unique_ptr<RunSection[]> sections;  ///< by part modulo most_sections
     StretchExchange exchange;
     double begin = 0;
-    DrivenPath drive{};                   ///< an axis moves along it, and no stretch is offered; written before `ready`
-    std::atomic<std::uint64_t> ready{0};  ///< life << 32 | number of the run, from 1: a stretch is offered
+    Override planned{};  ///< factors of the stretch that is offered; as `drive`, and read by whoever has taken `ready` away
+    DrivenPath drive{};  ///< an axis moves along it, and no stretch is offered; written before `ready`
+    std::atomic<std::uint64_t> ready{
+        0};  ///< life << 32 | number of the run, from 1: a stretch is offered. 0: not yet, or either side has taken it
     std::atomic<std::uint32_t> first{0};  ///< the first command on it
     std::atomic<std::uint32_t> last{0};   ///< the last one so far
     std::atomic<double> closed{0};        ///< s of its end, once nothing will be joined to it any more; else infinite

@@ -168,6 +168,7 @@ RunCurve::Seen GroupPlanner::corner_of(const Run& run, const GroupOrder& move, c
     corner.run.carried = move.place.carried;
     corner.run.configuration = end_.configuration;
     corner.run.before = run.curve.seen.back().run.section.command;
+    corner.run.way_before = run.curve.seen.back().run.way;
     corner.run.way = shape.element.length();
     corner.run.rest = run.curve.path.sections().back().length;
     corner.run.to = shape.end.members;
@@ -324,7 +325,7 @@ double GroupPlanner::final_end(const Run& run) const {
     if (run.pulled) return std::max(half, run.final_end);
     const double s = std::max(run.track.s.load(std::memory_order_relaxed), run.curve.begin());
     const AlongLimits l = run.curve.along(std::min(std::max(s, section.begin), full));
-    const double soon = 6 * run.service.lead();
+    const double soon = 6 * run.service->lead();
     const double v = std::min(run.track.velocity.load(std::memory_order_relaxed) + l.acceleration * soon, l.velocity);
     return half - s > stopping_way(v, l.deceleration, l.jerk) + v * soon ? std::max(half, run.final_end) : full;
 }
@@ -342,8 +343,18 @@ void GroupPlanner::publish(Run& run) {
     if (!run.open) run.track.closed.store(run.curve.path.length(), std::memory_order_release);
 }
 
+/// Planned before the factors were lowered, and not begun yet: anew, from its beginning.
+void GroupPlanner::take_back(Run& run) {
+    std::uint64_t prepared = GroupLink::both(life_, run.number);
+    if (!run.track.ready.compare_exchange_strong(prepared, 0, std::memory_order_acq_rel, std::memory_order_relaxed)) return;  // it is gone
+    run.track.exchange.reset();
+    run.plan_anew(lead_);
+    run.offered = false;
+}
+
 void GroupPlanner::feed(Run& run) {
     if (run.driven) return;
+    if (run.offered && asks_for_more(run.track.planned, wish_.factors)) take_back(run);
     run.curve.forget_before(run.track.part.load(std::memory_order_relaxed));
     run.curve.wish(wish_.stands, wish_.own_ramp, wish_.factors, wish_.ramp);
     run.final_end = final_end(run);
@@ -352,9 +363,10 @@ void GroupPlanner::feed(Run& run) {
     wish.motion = wish_.stands ? PathWish::Motion::stand : PathWish::Motion::go;
     wish.velocity_factor = wish_.factors.velocity;
     wish.revision = revision_;
-    const PathAnswer answer = run.service.step(run.curve, run.final_end, wish);
+    const PathAnswer answer = run.service->step(run.curve, run.final_end, wish);
     if (answer == PathAnswer::offered && !run.offered) {
         run.offered = true;
+        run.track.planned = wish_.factors;
         run.track.ready.store(GroupLink::both(life_, run.number), std::memory_order_release);
     }
     if (answer == PathAnswer::stuck) say_stuck(run);
@@ -366,7 +378,7 @@ void GroupPlanner::say_stuck(Run& run) {
     if (run.said_stuck) return;
     run.said_stuck = true;
     const bool begins = !run.offered && !run.pulled;
-    const CommandId id = begins ? run.first : run.curve.path.section_at(run.service.end()).command;
+    const CommandId id = begins ? run.first : run.curve.path.section_at(run.service->end()).command;
     (void)link_.verdicts.try_push({life_, id, ErrorId::path_not_planned, !begins, run.number});
 }
 

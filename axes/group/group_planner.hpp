@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "axes/group/mixed_corner.hpp"
 #include "axes/group/move_shape.hpp"
@@ -27,11 +28,14 @@ public:
 private:
     struct Run {
         Run(const MoveSpace& space, RunTrack& on, double lead)
-            : curve(space.arm, space.members, space.limits, space.tool_velocity),
-              service({curve.axis_limits().begin(), curve.axis_limits().end()}, on.exchange, lead),
-              track(on) {}
+            : curve(space.arm, space.members, space.limits, space.tool_velocity), track(on) {
+            plan_anew(lead);
+        }
+        void plan_anew(double lead) {
+            service.emplace(std::vector<PathAxisLimits>{curve.axis_limits().begin(), curve.axis_limits().end()}, track.exchange, lead);
+        }
         RunCurve curve;
-        PathService service;
+        std::optional<PathService> service;
         RunTrack& track;
         std::uint32_t first = 0;
         std::uint32_t number = 0;  // of this run in its life, from 1
@@ -75,6 +79,7 @@ private:
     [[nodiscard]] RunCurve::Seen section_of(const Run& run, const GroupOrder& move, const MoveShape& shape, CornerPassed passed) const;
     [[nodiscard]] BlendRequest blend_of(const Run& run, const GroupOrder& move, const MoveShape& shape) const;
     void feed(Run& run);
+    void take_back(Run& run);
     /// True: all of it is placed.
     [[nodiscard]] bool walk(const GroupOrder& move);
     // Of a path that an axis drives, which is laid out as a whole: path_lay.cpp. True: it is, or will not be.

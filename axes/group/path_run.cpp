@@ -181,14 +181,12 @@ bool PathRun::begin(CommandId id) noexcept {
         arrived_ = false;
         return true;
     }
-    const RunTrack& next = in.link.tracks[in.begun % 2];
-    const bool ready = next.ready.load(std::memory_order_acquire) == GroupLink::both(in.life, in.begun + 1);
-    if (!ready || next.first.load(std::memory_order_relaxed) != id) return false;
+    if (in.take_next(id) == nullptr) return false;
     take_track();
     return true;
 }
 
-/// Onto the run that is prepared.
+/// Onto the run that was taken.
 void PathRun::take_track() noexcept {
     auto& in = *inside_;
     RunTrack& next = in.link.tracks[in.begun % 2];
@@ -226,9 +224,7 @@ void PathRun::go_over(CommandId id) noexcept {
     auto& in = *inside_;
     const bool first = in.note && in.note->run == in.begun;  // that is in front of it
     if (!exists_ || stops_ || first || !at_end_of_run()) return;
-    const RunTrack& next = in.link.tracks[in.begun % 2];
-    const bool ready = next.ready.load(std::memory_order_acquire) == GroupLink::both(in.life, in.begun + 1);
-    if (ready && next.first.load(std::memory_order_relaxed) == id) take_track();
+    if (in.take_next(id) != nullptr) take_track();
 }
 
 void PathRun::clear() noexcept {
@@ -300,7 +296,7 @@ void PathRun::look() noexcept {
     line_ = run.line;
     number_ = run.number;
     arrived_ = in.player && in.player->standing() && !run.section.blend && s >= run.corner * (1 - 1e-12);
-    length_ = before ? run.section.length / 2 : run.way;
+    length_ = before ? run.way_before : run.way;
     remaining_ = before              ? run.section.begin + run.section.length / 2 - s
                  : run.section.blend ? run.section.end() - s + run.rest
                                      : std::max(run.corner - s, 0.0);

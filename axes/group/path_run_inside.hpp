@@ -57,6 +57,18 @@ struct PathRun::Inside {
     } verdicts;
     std::uint32_t late = 0;
 
+    /// The next run, if it is prepared and begins with this command: the cycle's from then on. nullptr: not now. What was planned for more than the
+    /// factors of now is left to the planner, who plans it anew: it would go like that until a plan for less had come up with it.
+    [[nodiscard]] RunTrack* take_next(CommandId id) noexcept {
+        RunTrack& next = link.tracks[begun % 2];
+        std::uint64_t prepared = GroupLink::both(life, begun + 1);
+        if (next.ready.load(std::memory_order_acquire) != prepared || next.first.load(std::memory_order_relaxed) != id) return nullptr;
+        if (!next.ready.compare_exchange_strong(prepared, 0, std::memory_order_acq_rel, std::memory_order_relaxed)) return nullptr;
+        if (next.drive.driven || !asks_for_more(next.planned, wish.factors)) return &next;
+        next.ready.store(prepared, std::memory_order_release);
+        return nullptr;
+    }
+
     /// It is on a run.
     [[nodiscard]] bool goes() const noexcept { return player.has_value() || drive.on(); }
     [[nodiscard]] std::uint32_t part() const noexcept { return player ? player->part() : driven_part; }

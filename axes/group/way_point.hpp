@@ -22,6 +22,7 @@ struct RunSection {
     CarriedTool carried{};                            ///< of whose point they are poses
     Configuration configuration;                      ///< which way of the arm holds along it
     std::uint32_t before = 0;                         ///< of a blend: the command that it comes from
+    double way_before = 0;                            ///< length of that one's own element
     double corner = 0;                                ///< s at which its command ends, were it not blended
     double way = 0;                                   ///< length of its command's own element
     double rest = 0;                                  ///< what is left of that behind this section, where it is a blend

@@ -139,6 +139,7 @@ void CellGrid::add_corners_of_halt(const RunTask& task) {
         const double size = std::max(corner_share * way, shortest_corner * (task.to - task.from));
         const auto behind = std::upper_bound(stations_.begin(), stations_.end(), s);
         const auto i = behind - stations_.begin();
+        if (i == 0) return;  // in front of the run: it has less left to brake than its last ramp takes
         if (behind != stations_.end() && s > stations_[static_cast<std::size_t>(i) - 1]) {
             stations_.insert(behind, s);
             sizes_.insert(sizes_.begin() + i, size);

@@ -52,6 +52,39 @@ TEST_F(GcodeCommand, CheckAddsUp) {
         EXPECT_THAT(check.text(), HasSubstr(words));
 }
 
+// All that the path stands for until its program has answered: spindle and coolant, too. The end switches off what still turns.
+TEST_F(GcodeCommand, CheckCountsAllThatHasToBeAcknowledged) {
+    const auto all = file("waits.ngc", "G21 G90\nM3 S100\nG1 X1 F600\nM7\nM8\nM9\nM4\nM5\nM100 P1 Q2\nM0\nM1\nM6 T1\nS200\nM3\nM30\n");
+    Child check({taktwerk, "gcode", "check", all, "--tool", "1=3"});
+    EXPECT_EQ(check.wait(20s), exit_ok) << check.text();
+    EXPECT_THAT(check.text(), HasSubstr("1 x M0, 1 x M6, 2 x M3, 1 x M4, 2 x M5, 1 x M7, 1 x M8, 1 x M9, 1 x M100 to M199"));
+    Child scripts({taktwerk, "gcode", "check", "--json", all, "--tool", "1=3"});
+    EXPECT_EQ(scripts.wait(20s), exit_ok);
+    const auto said = nlohmann::json::parse(scripts.text()).at("acknowledged");
+    EXPECT_EQ(said.at("spindle"), 5);
+    EXPECT_EQ(said.at("coolant"), 3);
+    EXPECT_EQ(said.at("tool_changes"), 1);
+}
+
+// The machine's own check reads its paths through, by their tables: nobody waits for a workpiece to learn of a comma.
+TEST_F(GcodeCommand, TheCheckOfAMachineReadsItsPaths) {
+    const auto machine = [&](const std::string& text) {
+        file("part.ngc", text);
+        return file("portal.yaml",
+                    "version: 1\nname: portal\ncycle: 1 ms\nbus: { interface: simulated, slaves: [{ name: d, profile: sv33-e }] }\n"
+                    "axes: { x: { slave: d, unit: mm, gearing: { counts_per_revolution: 131072, feed: 20 mm }, "
+                    "limits: { velocity: 100 mm/s, acceleration: 1000 mm/s2, jerk: 20000 mm/s3 } } }\n"
+                    "paths: { part: { file: part.ngc } }\n");
+    };
+    Child good({taktwerk, "check", machine("G21 G90\nG0 X1\nM2\n")});
+    EXPECT_EQ(good.wait(20s), exit_ok) << good.text();
+    EXPECT_THAT(good.text(), Not(HasSubstr("part.ngc:")));
+    Child bad({taktwerk, "check", machine("G21 G90\nG0 X1\nG41\nM2\n")});
+    EXPECT_EQ(bad.wait(20s), exit_ok) << bad.text();
+    EXPECT_THAT(bad.text(), HasSubstr("part.ngc:3:1: G41 is not offered"));
+    EXPECT_THAT(bad.text(), HasSubstr("path part: MC_PathSelect refuses it"));
+}
+
 TEST_F(GcodeCommand, CheckSaysWhereWhatAndWhatToDoAndLooksBehindTheFirstError) {
     Child check({taktwerk, "gcode", "check", file("bad.ngc", "G0 X1\nG1 X2\nG0 X1,5\nG41\nM30\nG42\n")});
     EXPECT_EQ(check.wait(20s), exit_bad_file);

@@ -100,6 +100,33 @@ TEST(GcodePath, OverrideBendsNothing) {
     EXPECT_LT(distance(rig.at(), {60, 30, 5}), 1e-9);
 }
 
+// G-070: what is lowered while an M word waits holds from the answer on. Whoever gives the answer may stand in the machine.
+TEST(GcodePath, AnOverrideOfNothingWhileAnMWordWaitsHoldsWhatComesBehindIt) {
+    PathRig rig("G21 G90 G61\nG0 X5\nM100 P1 Q1\nG0 X60\nM2\n");
+    rig.acknowledges = false;
+    ASSERT_TRUE(rig.begin());
+    ASSERT_TRUE(rig.plc.until([&] { return rig.handshake.Waits; }, 5000));
+    rig.plc.run(100);
+    ASSERT_EQ(rig.plc.rig.set(axes::Override{.velocity = 0}), axes::ErrorId::none);
+    rig.plc.run(50);
+    const auto stood = rig.at();
+    rig.acknowledges = true;
+    for (int i = 0; i < 1500; ++i) {
+        rig.plc.scan();
+        ASSERT_EQ(rig.at(), stood) << i << " cycles behind the answer";
+    }
+    EXPECT_FALSE(rig.handshake.Waits);
+    ASSERT_EQ(rig.plc.rig.set(axes::Override{.velocity = 0.2}), axes::ErrorId::none);
+    double fastest = 0;
+    ASSERT_TRUE(rig.plc.until(
+        [&] {
+            fastest = std::max(fastest, std::abs(rig.plc.rig.axis(0).set_velocity));
+            return rig.move.Done;
+        },
+        10000));
+    EXPECT_NEAR(fastest, 20, 0.1) << "of the 100 mm/s of a rapid";
+}
+
 // G-065: a halt in the middle of an arc ends on the arc; the path is over then.
 TEST(GcodePath, AHaltInAnArcStandsOnTheArc) {
     PathRig rig(contour);
