@@ -52,7 +52,7 @@ void GroupPlanner::take(const GroupOrder& order) {
             break;
         case GroupOrder::Kind::wish: {
             const bool other = order.factors.acceleration != wish_.factors.acceleration || order.factors.jerk != wish_.factors.jerk;
-            const bool other_ramp = order.stands && (order.own_ramp != wish_.own_ramp || order.ramp != wish_.ramp);
+            const bool other_ramp = order.stands && (!wish_.stands || order.own_ramp != wish_.own_ramp || order.ramp != wish_.ramp);
             if (other || other_ramp) ++revision_;
             wish_ = order;
             break;

@@ -274,8 +274,11 @@ CommandId AxisGroup::take_disable() noexcept {
 }
 
 void AxisGroup::halt() noexcept {
-    const bool stops = interrupting_ != 0 || disabling_ != 0 || going_off_ != 0 || queue_.active().command.kind == GroupCommandKind::halt;
-    if (state_ != GroupState::GroupMoving || !members_.led() || stops) return;
+    if (!members_.led() || (state_ != GroupState::GroupMoving && state_ != GroupState::GroupStopping)) return;
+    const bool stops = state_ == GroupState::GroupStopping || interrupting_ != 0 || disabling_ != 0 || going_off_ != 0 ||
+                       queue_.active().command.kind == GroupCommandKind::halt;
+    // A program may stop as softly as it likes; who stops the machine does not wait for that.
+    if (stops) return run_.stop({}, Override{});
     GroupCommand command;
     command.kind = GroupCommandKind::halt;
     (void)take_motion(command, queue_.active().owner);

@@ -131,7 +131,7 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         }
     }
     if (stand) {
-        if (at_rest || active_.stands) return PathAnswer::nothing_new;
+        if (at_rest || (active_.stands && wish.revision == active_.revision)) return PathAnswer::nothing_new;
         if (!plan_halt(curve, task, active_.to, former)) return nothing_found(now, false);
         task.to = plan_.shape.end;
         send(begin, task, true, wish.revision);
