@@ -430,6 +430,7 @@ void AxisGroup::publish() noexcept {
     see_selection();
     tracking_.publish(view_);
     view_.driver = run_.driver();
+    members_.path_driven_by(driver());
     slaves_.publish(view_);
     queue_.publish(view_);
 }

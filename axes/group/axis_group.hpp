@@ -129,7 +129,9 @@ private:
     [[nodiscard]] bool serve(const PathNote& note, Duration period) noexcept;
     // Of a path that an axis drives.
     [[nodiscard]] bool driven_by(AxisRef axis) const noexcept;
-    [[nodiscard]] bool is_driven() const noexcept;
+    [[nodiscard]] bool is_driven() const noexcept { return driver().valid(); }
+    /// Of the path that is gone, or waits.
+    [[nodiscard]] AxisRef driver() const noexcept;
     /// False: the members do not follow it any more.
     [[nodiscard]] bool watch_driven() noexcept;
     void forget_path() noexcept;

@@ -95,22 +95,14 @@ void AxisGroup::see_selection() noexcept {
 }
 
 /// It begins in its turn, and has no end: nothing waits behind it.
-bool AxisGroup::is_driven() const noexcept {
-    if (queue_.active().command.kind == GroupCommandKind::driven_path) return true;
+AxisRef AxisGroup::driver() const noexcept {
+    if (queue_.active().command.kind == GroupCommandKind::driven_path) return queue_.active().command.driver.master;
     for (std::size_t i = 0; i < queue_.waiting(); ++i)
-        if (queue_.waiting_at(i).command.kind == GroupCommandKind::driven_path) return true;
-    return false;
+        if (queue_.waiting_at(i).command.kind == GroupCommandKind::driven_path) return queue_.waiting_at(i).command.driver.master;
+    return {};
 }
 
-bool AxisGroup::driven_by(AxisRef axis) const noexcept {
-    const auto is = [&](const AcceptedGroupCommand& c) {
-        return c.command.kind == GroupCommandKind::driven_path && c.command.driver.master == axis;
-    };
-    if (queue_.has_active() && is(queue_.active())) return true;
-    for (std::size_t i = 0; i < queue_.waiting(); ++i)
-        if (is(queue_.waiting_at(i))) return true;
-    return false;
-}
+bool AxisGroup::driven_by(AxisRef axis) const noexcept { return axis.valid() && driver() == axis; }
 
 ErrorId AxisGroup::refuse_driven(const GroupCommand& command) const noexcept {
     if (command.buffer_mode > mcBuffered) return ErrorId::buffer_mode_not_supported;
