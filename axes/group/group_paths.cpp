@@ -28,13 +28,17 @@ void AxisGroup::walk_path(Duration period) noexcept {
     while (const PathNote* note = run_.note()) {
         if (!serve(*note, goes ? period : Duration{})) return;
         if (note->kind == PathNote::Kind::end) return queue_.finish_active(Outcome::done);
-        if (note->kind == PathNote::Kind::fault) return queue_.finish_active(Outcome::error, note->place.error);
+        if (note->kind == PathNote::Kind::fault) {
+            refused(active, note->place);
+            return queue_.finish_active(Outcome::error, note->place.error);
+        }
         const bool told = note->kind == PathNote::Kind::tell;
         run_.drop_note();
         if (told) return;  // one a cycle, or nobody sees it
     }
     if (run_.stuck() != ErrorId::none && run_.over()) {
         shown.place = {.error = run_.stuck(), .line = shown.line};
+        refused(active, shown.place);
         return queue_.finish_active(Outcome::error, run_.stuck());
     }
     if (goes) run_.go_over(active.id);

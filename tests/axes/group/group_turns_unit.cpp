@@ -9,7 +9,8 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double pi = std::numbers::pi, degree_of_axis = pi / 180;
+using std::numbers::pi;
+constexpr double degree_of_axis = pi / 180;
 
 GroupCommand in_the_machine(GroupCommand command) {
     command.frame = mcMCS;
