@@ -15,6 +15,7 @@
 #include "fb_library/groups/group_moves.hpp"
 #include "fb_library/groups/group_parameters.hpp"
 #include "fb_library/groups/group_paths.hpp"
+#include "fb_library/groups/group_refusal_block.hpp"
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
 #include "fb_library/groups/group_sync_blocks.hpp"
@@ -113,8 +114,8 @@ using GroupBlocks =
               MC_PathSelect, MC_MovePath, MC_GroupHome, MC_GroupWriteSWLimits, MC_GroupReadParameter, MC_GroupWriteParameter,
               MC_GroupWriteReferenceDynamics, MC_GroupReadReferenceDynamics, MC_TrackConveyorBelt, MC_TrackRotaryTable, MC_SyncAxisToGroup,
               MC_SyncGroupToAxis>;
-/// Stored paths, beside the standard's blocks.
-using PathBlocks = BlockList<Path_Handshake>;
+/// Of groups, beside the standard's blocks: stored paths, refusals.
+using PathBlocks = BlockList<Path_Handshake, Group_ReadRefusal>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 

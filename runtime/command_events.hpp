@@ -1,5 +1,5 @@
 #pragma once
-// Commands that an axis refused, or that ended before they were done: facts for people, kept by the cycle. A short list in which the same
+// Commands that an axis or a group of axes refused, or that ended before they were done: facts for people, kept by the cycle. A short list in which the same
 // event stands once with a count, so that a program that asks again in each scan neither floods nor hides anything. The words are made
 // outside the cycle (hmi_bridge/words/event_text.hpp). Fixed size, real-time safe.
 
@@ -9,19 +9,22 @@
 #include <type_traits>
 
 #include "axes/axis/command.hpp"
+#include "axes/group/group_command.hpp"
 #include "axes/words/types.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::runtime {
 
 inline constexpr std::uint16_t no_program = 0xFFFF;
+inline constexpr std::uint16_t no_group = 0xFFFF;
 
 /// Who gave a command, or holds an axis.
 struct CommandGiver {
     axes::CommandKind kind = axes::CommandKind::none;
     axes::Owner owner = axes::Owner::none;
-    std::uint16_t program = no_program;  ///< index in the machine's layout
-    const void* block = nullptr;         ///< MachineLayout::block_at
+    std::uint16_t program = no_program;                                ///< index in the machine's layout
+    const void* block = nullptr;                                       ///< MachineLayout::block_at
+    axes::GroupCommandKind group_kind = axes::GroupCommandKind::none;  ///< of a command to a group, whose `kind` is none
     friend bool operator==(const CommandGiver&, const CommandGiver&) = default;
 };
 
@@ -34,12 +37,14 @@ struct CommandEvent {
     Instant at{};              ///< the first time
     What what = What::refused;
     std::uint16_t axis = 0;
-    CommandGiver given;       ///< kind none: MC_Power's level
-    CommandGiver by;          ///< refused: who has the axis now; aborted: who took it
-    bool held = false;        ///< an MC_Stop of `by` holds the axis while its Execute is TRUE
-    axes::AxisState state{};  ///< of the axis, then
+    std::uint16_t group = no_group;  ///< it is about a group then, and about no axis
+    CommandGiver given;              ///< kind none: MC_Power's level
+    CommandGiver by;                 ///< refused: who has the axis now; aborted: who took it
+    bool held = false;               ///< an MC_Stop of `by` holds the axis while its Execute is TRUE
+    axes::AxisState state{};         ///< of the axis, then
     axes::ErrorId error = axes::ErrorId::none;
-    std::uint16_t axis_error = 0;  ///< alarm of the axis in ErrorStop
+    std::uint16_t axis_error = 0;  ///< alarm of the axis in ErrorStop; of a group what led it to GroupErrorStop
+    axes::PathPlace place{};       ///< of a group's: where in its text and on its path, and what stands there
     std::uint32_t times = 1;       ///< since `at`
 };
 static_assert(std::is_trivially_copyable_v<CommandEvent>);

@@ -6,6 +6,7 @@
 
 #include "axes/excitation/measure_order.hpp"
 #include "axes/group/group_types.hpp"
+#include "axes/group/path_types.hpp"
 #include "axes/words/types.hpp"
 #include "core/fixed_text.hpp"
 #include "core/time.hpp"
@@ -136,6 +137,10 @@ struct CommandAnswer {
     const void* holder = nullptr;               ///< the block that moves or locks the axis (MachineLayout::block_at)
     double limited_to = 0;                      ///< u/s, > 0: accepted, but the axis goes no faster than this now ...
     Mode limited_in = Mode::automatic;          ///< ... by the speed of this mode; automatic: by the limit of the axis itself
+    // Of a group's jog that goes no further:
+    axes::JogEnd jog_end = axes::JogEnd::none;
+    axes::AxisRef limiting{};                       ///< whose limit it is; invalid: no axis'
+    std::uint8_t room = axes::PathHindrance::none;  ///< of the workspace: which (MachineLayout::GroupInfo::rooms)
 };
 static_assert(std::is_trivially_copyable_v<CommandAnswer>);
 

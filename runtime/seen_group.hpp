@@ -36,6 +36,7 @@ struct SeenGroup {
     /// Along the path of the active command; lengths in the group's unit.
     struct Along {
         double velocity = 0, acceleration = 0;
+        std::uint16_t members = 0;  ///< places of those whose own ways its length is, in their units; 0: it is the way of the tool's point
         axes::PathLimiter limiter = axes::PathLimiter::none;
         std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
         double tool_limit = 0;            ///< of the tool's point in set-up mode, whoever moves it; 0: none holds
@@ -63,7 +64,8 @@ struct SeenGroup {
     double path_deviation = 0;  ///< by which the tool's point is not where it should be, while it moves; in the group's unit
 
     axes::JogEnd jog_end = axes::JogEnd::none;  ///< why the last jog could not go on, until something else moves the group
-    std::uint8_t jog_end_place = 0;             ///< JogEnd::member_limit: whose
+    axes::PathHindrance jog_hindrance{};        ///< of that
+    axes::GroupRefusal refusal{};               ///< the last one of a program's command, until another motion begins
 
     axes::GroupCommandKind active_kind = axes::GroupCommandKind::none;
     axes::CommandId active = 0;

@@ -11,6 +11,7 @@
 #include "fb_library/groups/group_state_blocks.hpp"
 #include "fb_library/groups/group_stops.hpp"
 #include "fb_library/motion/home.hpp"
+#include "hmi_bridge/words/place_text.hpp"
 #include "programs/api/entry.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/run/virtual_runner.hpp"
@@ -161,6 +162,12 @@ Result<DryRunOutcome> dry_run(runtime::MachineConfig config, const DryRunWish& w
     runtime::VirtualRunner runner{machine, world, clock};
     if (auto up = runner.bring_up(); !up) return up.error();
     (void)runner.run_until([] { return job.over; }, from_seconds(wish.most_seconds));
+    const auto& groups = machine.layout().groups;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        auto place = job.out.place;
+        place.line = 0;
+        if (groups[i].name == wish.group) job.out.where = hmi::place_text(place, machine.layout(), i, hmi::members_of(machine.layout(), i));
+    }
     runner.shut_down();
     if (!job.trouble.empty())
         return Error{"gcode.not_begun", "gcode run", job.trouble, "let the machine's own program run, simulated, and look at its alarms"};

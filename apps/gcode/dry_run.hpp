@@ -35,6 +35,7 @@ struct DryRunRequest {
 struct DryRunOutcome {
     bool done = false;
     axes::PathPlace place{};  ///< why not; error none: it took too long
+    std::string where{};      ///< of that, in words, but for the line (hmi_bridge/words/place_text.hpp); empty: nobody can say
     double seconds = 0;       ///< from MC_MovePath to its end
     double moving = 0;        ///< of them
     double length = 0, fastest = 0;

@@ -115,7 +115,8 @@ int tell(const RunWords& words, const DryRunOutcome& out, const axes::AxisGroupC
                                     {"length", out.length}, {"fastest", out.fastest}, {"unit", group.unit}};
         for (std::size_t i = 0; i < group.members.size(); ++i) json["at_limit"][group.members[i]] = out.at_limit[i];
         const auto* row = axes::find_error(out.place.error);
-        if (!out.done) json["error"] = {{"code", row != nullptr ? std::string(row->name) : ""}, {"line", out.place.line}};
+        if (!out.done)
+            json["error"] = {{"code", row != nullptr ? std::string(row->name) : ""}, {"line", out.place.line}, {"where", out.where}};
         fmt::print("{}\n", json.dump(2));
     } else {
         print_outcome(out, group, name);
@@ -128,7 +129,9 @@ int tell(const RunWords& words, const DryRunOutcome& out, const axes::AxisGroupC
     const auto subject = fmt::format("{}:{}", name, out.place.line);
     if (row == nullptr)
         return fail({"gcode.run", subject, "an axis has an error", "run the machine's own program, simulated, and look at its alarms"});
-    return fail({"gcode.run", subject, fmt::format("{}: {}", row->english.text, row->english.cause), std::string(row->english.remedy)});
+    return fail({"gcode.run", subject,
+                 fmt::format("{}: {}", row->english.text, out.where.empty() ? row->english.cause : std::string_view(out.where)),
+                 std::string(row->english.remedy)});
 }
 
 int run(const RunWords& words) {

@@ -177,7 +177,7 @@ void MachineLog::events(Instant now, const Snapshot& s) {
         last_event_ = event.number;
         const auto words = hmi::describe(event, machine_.layout());
         sink_({to_seconds(now - start_), std::string(hmi::word(event.what)),
-               fmt::format("axis {}: {}", machine_.layout().axes[event.axis].name, words.what), words.remedy});
+               fmt::format("{}: {}", hmi::event_subject(event, machine_.layout()), words.what), words.remedy});
     }
     if (s.events_dropped > events_dropped_)
         say(now, "missed", fmt::format("{} more commands were refused or aborted", s.events_dropped - events_dropped_));

@@ -23,7 +23,10 @@ public:
 
     void put(std::vector<std::string>& out, bool details) const {
         out.push_back(cut(head(), size_.columns));
-        if (!details) return put_error(out);
+        if (!details) {
+            put_error(out);
+            return put_refusal(out);
+        }
         if (tool_known()) {
             out.push_back(line("set    " + pose("tool_set") + fmt::format("   {:.1f} {}/s", number("tool_speed"), text("unit"))));
             out.push_back(line("actual " + pose("tool_actual") + fmt::format("   {:.1f} {}/s", number("tool_actual_speed"), text("unit"))));
@@ -32,12 +35,15 @@ public:
         if (const auto doing = what_it_does(); !doing.empty()) out.push_back(line(doing));
         if (const auto limits = limits_used(); !limits.empty()) out.push_back(line(limits));
         put_error(out);
+        put_refusal(out);
     }
 
 private:
     [[nodiscard]] std::string text(const char* key) const { return group_.at(key).get<std::string>(); }
     [[nodiscard]] double number(const char* key) const { return hmi::number_of(group_.at(key)); }
     [[nodiscard]] bool flag(const char* key) const { return group_.at(key).get<bool>(); }
+    /// Of a path of turning axes: degrees.
+    [[nodiscard]] std::string path_unit() const { return group_.value("path_unit", text("unit")); }
     [[nodiscard]] bool tool_known() const { return flag("tool_known"); }
     [[nodiscard]] std::string paint(const char* code, const std::string& what) const {
         return size_.colours ? fmt::format("\033[{}m{}\033[0m", code, what) : what;
@@ -54,7 +60,7 @@ private:
         out += flag("powered") ? "on" : " -";
         if (flag("interrupted")) out += flag("held") ? "   INTERRUPTED by a person" : "   interrupted by its program";
         if (state != "GroupMoving" && state != "GroupStopping") return out;
-        return out + fmt::format("   {:.1f} {}/s{}", number("path_velocity"), text("unit"), limited());
+        return out + fmt::format("   {:.1f} {}/s{}", number("path_velocity"), path_unit(), limited());
     }
 
     [[nodiscard]] std::string limited() const {
@@ -100,7 +106,7 @@ private:
         if (const auto command = text("command"); !command.empty()) {
             const auto block = text("block");
             out = fmt::format("{}{}{}  {:.0f} %", command, block.empty() ? "" : " ", block, 100 * number("progress"));
-            if (const double to_go = number("distance_to_go"); to_go > 0) out += fmt::format(", {:.1f} {} to go", to_go, text("unit"));
+            if (const double to_go = number("distance_to_go"); to_go > 0) out += fmt::format(", {:.1f} {} to go", to_go, path_unit());
             if (const double left = number("remaining_s"); left > 0) out += fmt::format(", {:.1f} s", left);
         }
         if (const int queued = group_.at("queued").get<int>(); queued > 0) out += fmt::format("{}{} wait", out.empty() ? "" : ", ", queued);
@@ -138,6 +144,31 @@ private:
             out.push_back(cut("   why: " + cause, size_.columns));
         if (const auto remedy = group_.value("error_remedy", std::string{}); !remedy.empty())
             out.push_back(cut(fmt::format("   -> {}", remedy), size_.columns));
+    }
+
+    /// What it has refused of its program, last.
+    void put_refusal(std::vector<std::string>& out) const {
+        const auto refusal = group_.find("refusal");
+        if (refusal == group_.end()) return;
+        const auto of = [&](const char* key) { return refusal->value(key, std::string{}); };
+        const auto block = of("block");
+        out.push_back(paint(
+            red, cut(fmt::format("   refused {}{}{}: {} ({})", of("command"), block.empty() ? "" : " ", block, of("text"), of("error")),
+                     size_.columns)));
+        if (const auto where = of("where"); !where.empty()) {
+            // A narrow screen must not lose the place behind the room.
+            for (std::size_t begin = 0; begin < where.size();) {
+                auto end = where.find("; ", begin);
+                for (auto next = end; next != std::string::npos && next - begin + 10 < static_cast<std::size_t>(size_.columns);
+                     next = where.find("; ", next + 1))
+                    end = next;
+                if (where.size() - begin + 10 < static_cast<std::size_t>(size_.columns)) end = std::string::npos;
+                const auto part = where.substr(begin, end == std::string::npos ? end : end - begin);
+                out.push_back(cut(fmt::format("   {} {}", begin == 0 ? "where:" : "      ", part), size_.columns));
+                begin = end == std::string::npos ? where.size() : end + 2;
+            }
+        }
+        if (const auto remedy = of("remedy"); !remedy.empty()) out.push_back(cut(fmt::format("   -> {}", remedy), size_.columns));
     }
 
     const Json& group_;

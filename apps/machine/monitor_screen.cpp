@@ -191,6 +191,11 @@ private:
     }
 
     /// The newest commands that were refused or aborted.
+    static std::string whose(const Json& event) {
+        const auto group = event.value("group", std::string{});
+        return group.empty() ? "axis " + event.at("axis").get<std::string>() : "group " + group;
+    }
+
     Lines events() const {
         Lines out;
         const auto found = state_.find("events");
@@ -200,7 +205,7 @@ private:
             const auto& event = (*found)[i];
             const auto times = event.at("times").get<unsigned>();
             const double ago = (hmi::number_of(state_.at("time_ns")) - hmi::number_of(event.at("time_ns"))) * 1e-9;
-            out.push_back(cut(fmt::format(" {} s ago  axis {}: {}{}", fmt::format("{:.0f}", ago), event.at("axis").get<std::string>(),
+            out.push_back(cut(fmt::format(" {} s ago  {}: {}{}", fmt::format("{:.0f}", ago), whose(event),
                                           event.at("english").get<std::string>(), times > 1 ? fmt::format(" ({} times)", times) : ""),
                               size_.columns));
             if (i + 1 == found->size()) out.push_back(cut("   -> " + event.at("remedy").get<std::string>(), size_.columns));

@@ -130,6 +130,10 @@ public:
     ErrorId lead(const SetpointFeed& next) noexcept;
     /// It stands, or comes to rest by itself.
     void leave_group() noexcept;
+    /// The length of its group's path follows that axis from now on, and so this axis does; invalid: nobody's.
+    void path_driven_by(AxisRef driver) noexcept;
+    /// Over couplings that run or wait, and over paths that axes drive.
+    [[nodiscard]] bool is_followed_by(const Axis& other) const noexcept;
 
 private:
     friend class AxisCore;

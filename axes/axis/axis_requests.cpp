@@ -164,6 +164,12 @@ void Axis::leave_group() noexcept {
     axis.writer.publish();
 }
 
+void Axis::path_driven_by(AxisRef driver) noexcept { core_->coupling.links.path_master = driver; }
+
+bool Axis::is_followed_by(const Axis& other) const noexcept {
+    return core_->coupling.as_master.is_followed_by(other.core_->coupling.as_master);
+}
+
 ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {
     core_->plain.disturb();
     const bool may = core_->body.may(owner);

@@ -27,6 +27,7 @@ public:
     CouplingState state;
     CamId selected;         ///< of the last SelectCam that was done
     SelectCam selected_as;  ///< that SelectCam
+    AxisRef path_master;    ///< drives the path of the group that leads this axis (Axis::path_driven_by)
 
 private:
     AxisBody& body_;

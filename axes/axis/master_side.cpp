@@ -54,7 +54,8 @@ bool MasterSide::is_followed_by(const MasterSide& master) const noexcept {
     at->walk_back_ = nullptr;
     while (at) {
         if (at == this) return true;
-        const auto list = at->masters();
+        auto list = at->masters();
+        if (at->links_.path_master.valid()) list.axes[list.count++] = at->links_.path_master;
         const MasterSide* further = nullptr;
         for (std::size_t i = 0; i < list.count && !further; ++i) {
             const MasterSide* next = links_.axis(list.axes[i]);

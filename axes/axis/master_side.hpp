@@ -24,7 +24,7 @@ public:
     [[nodiscard]] MasterList masters() const noexcept;
     /// Those of the coupling that runs.
     [[nodiscard]] MasterList running_masters() const noexcept;
-    /// Depth first from `master` along all couplings that run or wait. Each axis is looked at once.
+    /// Depth first from `master` along all couplings that run or wait, and along paths that an axis drives. Each axis is looked at once.
     [[nodiscard]] bool is_followed_by(const MasterSide& master) const noexcept;
 
     [[nodiscard]] const AxisUnits& units() const noexcept { return body_.units; }

@@ -27,7 +27,7 @@ struct MotionScene {
 
 /// Axes that an axis follows now or will by commands it has; some may be named twice.
 struct MasterList {
-    std::array<AxisRef, 2 * (2 + 1 + CommandQueue::capacity)> axes;
+    std::array<AxisRef, 2 * (2 + 1 + CommandQueue::capacity) + 1> axes;  // and the axis that drives its group's path
     std::size_t count = 0;
 };
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "axes/group/motion_target.hpp"
@@ -254,8 +253,11 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
         hold_ = members_.set_positions();
         const bool way = command.kind != GroupCommandKind::jog;
         if (way)
-            if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none)
+            if (const auto error = refuse_target(command, target_of(command, hold_, members_), members_); error != ErrorId::none) {
+                refused(active,
+                        {.error = error, .at = hindrance_of(error, command, active.place, hold_, config_.kinematics.get(), members_)});
                 return error;
+            }
         if (way && goes_nowhere(command, hold_, members_)) return ErrorId::none;
         const bool moving = tracking_.active();
         const auto caps = moving ? tracking_.path_caps(members_) : JoggingDynamics{};
@@ -267,7 +269,11 @@ std::optional<ErrorId> AxisGroup::begin_way(const AcceptedGroupCommand& active) 
     send_waiting();
     if (const auto said = run_.verdict(active.id)) {
         if (goes_stored_path(command.kind) && said->line != 0) view_.path.place = *said;
-        std::tie(view_.jog_end, view_.jog_end_place) = run_.jog_end(active.id);
+        if (command.kind == GroupCommandKind::jog) {
+            view_.jog_end = run_.jog_end(active.id);
+            view_.jog_hindrance = said->at;
+        }
+        if (said->error != ErrorId::none) refused(active, *said);
         if (said->error != ErrorId::none || !tracking_.active()) return said->error;
         tracking_.engage();  // no way to go on the object, but one to it
         return tracking_.in_sync() ? std::optional(said->error) : std::nullopt;
@@ -312,6 +318,20 @@ void AxisGroup::send_waiting() noexcept {
     }
 }
 
+/// A person has his answer. What falls in the same cycle behind another one falls with it: that one is told.
+void AxisGroup::refused(const AcceptedGroupCommand& accepted, const PathPlace& why) noexcept {
+    if (accepted.owner != Owner::program) return;
+    const auto last = view_.status(view_.refusal.id);
+    const bool falls_with_it =
+        accepted.id != 0 && (last == CommandStatus::active || last == CommandStatus::queued);  // over, and not published yet
+    if (falls_with_it) {
+        ++view_.refusal.number;
+        return;
+    }
+    const auto& command = accepted.command;
+    view_.refusal = {view_.refusal.number + 1, command.kind, accepted.id, command.instance, why};
+}
+
 bool AxisGroup::begin_active() noexcept {
     const auto& active = queue_.active();
     if (!goes_a_way(active.command.kind)) {
@@ -326,8 +346,10 @@ bool AxisGroup::begin_active() noexcept {
     if (run_.stuck() != ErrorId::none || run_.stops() || !same) run_.clear();
     elapsed_ = {};
     if (jogs() && !turn_jog()) return false;
+    const auto told = view_.refusal.number;
     const auto over_with = begin_way(active);
     if (!over_with) return true;
+    if (*over_with != ErrorId::none && view_.refusal.number == told) refused(active, {.error = *over_with});
     // What was planned behind it begins where it would have ended.
     if (*over_with == ErrorId::path_not_planned) run_.clear();
     queue_.finish_active(*over_with == ErrorId::none ? Outcome::done : Outcome::error, *over_with);
@@ -350,8 +372,9 @@ void AxisGroup::go_on(Duration period) noexcept {
     if (queue_.active().command.kind == GroupCommandKind::path) return walk_path(period);
     // The set-point has gone over to the way of a later command (G-061).
     while (goes_a_way(queue_.active().command.kind) && run_.command() > queue_.active().id && queue_.waiting() > 0) {
-        const auto passed = run_.verdict(queue_.active().id).value_or(PathPlace{}).error;  // one that makes no way lies in no run
-        queue_.finish_active(passed == ErrorId::none ? Outcome::done : Outcome::error, passed);
+        const auto passed = run_.verdict(queue_.active().id).value_or(PathPlace{});  // one that makes no way lies in no run
+        if (passed.error != ErrorId::none) refused(queue_.active(), passed);
+        queue_.finish_active(passed.error == ErrorId::none ? Outcome::done : Outcome::error, passed.error);
         queue_.activate_next();
         for (; is_setting(queue_.active().command.kind) && queue_.waiting() > 0; queue_.activate_next()) finish_setting();
         elapsed_ = {};
@@ -361,7 +384,10 @@ void AxisGroup::go_on(Duration period) noexcept {
     if (way && run_.command() == active.id) view_.commanded = run_.end();
     const bool interrupts = interrupting_ != 0;
     if (!(interrupts && active.command.kind == GroupCommandKind::wait)) elapsed_ += period;
-    if (way && run_.stuck() != ErrorId::none && run_.over() && !run_.arrived()) queue_.finish_active(Outcome::error, run_.stuck());
+    if (way && run_.stuck() != ErrorId::none && run_.over() && !run_.arrived()) {
+        refused(active, {.error = run_.stuck()});
+        queue_.finish_active(Outcome::error, run_.stuck());
+    }
     const bool done = active.command.kind == GroupCommandKind::wait
                           ? !interrupts && elapsed_ >= active.command.duration
                           : way && !jogs() && run_.arrived() && run_.command() == active.id && (!tracking_.active() || tracking_.in_sync());
@@ -408,6 +434,7 @@ void AxisGroup::publish() noexcept {
     const auto& along = run_.along();
     view_.path_velocity = led ? along.velocity : 0;
     view_.path_acceleration = led ? along.acceleration : 0;
+    view_.path_members = led ? run_.members_on_way() : std::uint16_t{0};
     view_.limiter = led ? run_.limiter() : PathLimiter::none;
     // The share of a jog's velocity is what was commanded; it reaches the path as an override does.
     if (view_.limiter == PathLimiter::override_factor && jogs() && factors().velocity >= 1) view_.limiter = PathLimiter::command;
@@ -430,6 +457,7 @@ void AxisGroup::publish() noexcept {
     see_selection();
     tracking_.publish(view_);
     view_.driver = run_.driver();
+    members_.path_driven_by(driver());
     slaves_.publish(view_);
     queue_.publish(view_);
 }

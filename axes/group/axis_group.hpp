@@ -116,6 +116,9 @@ private:
     [[nodiscard]] bool begin_active() noexcept;
     /// None: it can be gone, or not yet. Something: what it is over with.
     [[nodiscard]] std::optional<ErrorId> begin_way(const AcceptedGroupCommand& active) noexcept;
+    /// The view says it, of a program's command.
+    void refused(const AcceptedGroupCommand& accepted, const PathPlace& why) noexcept;
+    Submitted take(const GroupCommand& command, Owner owner) noexcept;
     void send_waiting() noexcept;
     [[nodiscard]] bool jogs() const noexcept { return queue_.active().command.kind == GroupCommandKind::jog; }
     /// False: nobody wants it any more, and it is over.
@@ -129,7 +132,9 @@ private:
     [[nodiscard]] bool serve(const PathNote& note, Duration period) noexcept;
     // Of a path that an axis drives.
     [[nodiscard]] bool driven_by(AxisRef axis) const noexcept;
-    [[nodiscard]] bool is_driven() const noexcept;
+    [[nodiscard]] bool is_driven() const noexcept { return driver().valid(); }
+    /// Of the path that is gone, or waits.
+    [[nodiscard]] AxisRef driver() const noexcept;
     /// False: the members do not follow it any more.
     [[nodiscard]] bool watch_driven() noexcept;
     void forget_path() noexcept;

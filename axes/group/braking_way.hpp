@@ -19,7 +19,9 @@ struct BrakingSpace {
 };
 
 /// If the members left the group in these states, `period` [s] apart: whether each of their set-points until they rest keeps the tool's point where it may
-/// be. Looks at those of them that can be near a wall; a stop of more than some 200 cycles along a wall at every second, third, ... of them.
+/// be. Away from walls that is one look; along one few, as far apart as the way is straight; only what nearly touches a wall is looked at in each of its
+/// set-points, a stop of more than some 200 cycles at every second, third, ... of them. What the arm's levers are along the way is bounded by twice what they
+/// are where it begins.
 [[nodiscard]] bool brakes_inside(const std::array<MotionState, most_members>& from, const GroupMembers& members, double period,
                                  const BrakingSpace& space) noexcept;
 

@@ -65,7 +65,7 @@ struct GroupVerdict {
     std::uint32_t run = 0;          ///< of a standing one: which run that is, from 1
     std::uint32_t line = 0;         ///< of a stored path: where in its text; 0: nowhere
     JogEnd jog_end = JogEnd::none;  ///< of a jog that has nothing to go
-    std::uint8_t jog_place = 0;     ///< JogEnd::member_limit: whose, by rank
+    PathHindrance at{};             ///< members by rank
 };
 
 /// In velocity, acceleration or jerk.

@@ -60,6 +60,13 @@ void GroupMembers::leave() noexcept {
     joined_ = {};
 }
 
+void GroupMembers::path_driven_by(AxisRef driver) noexcept {
+    if (driver == driver_) return;
+    driver_ = driver;
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (has(i)) axis(i).path_driven_by(driver);
+}
+
 bool GroupMembers::led() const noexcept {
     return std::any_of(joined_.begin(), joined_.end(), [](CommandId id) { return id != 0; });
 }

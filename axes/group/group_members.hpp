@@ -49,6 +49,8 @@ public:
         return first;
     }
     void leave() noexcept;
+    /// By which axis the length of their path goes, or will; invalid: none.
+    void path_driven_by(AxisRef driver) noexcept;
     /// At least one follows.
     [[nodiscard]] bool led() const noexcept;
 
@@ -66,6 +68,7 @@ private:
     std::span<Axis> axes_;
     std::array<AxisRef, most_members> members_{};
     std::array<CommandId, most_members> joined_{};  // the axis' command; 0: does not follow
+    AxisRef driver_{};
 };
 
 }  // namespace taktwerk::axes

@@ -28,13 +28,17 @@ void AxisGroup::walk_path(Duration period) noexcept {
     while (const PathNote* note = run_.note()) {
         if (!serve(*note, goes ? period : Duration{})) return;
         if (note->kind == PathNote::Kind::end) return queue_.finish_active(Outcome::done);
-        if (note->kind == PathNote::Kind::fault) return queue_.finish_active(Outcome::error, note->place.error);
+        if (note->kind == PathNote::Kind::fault) {
+            refused(active, note->place);
+            return queue_.finish_active(Outcome::error, note->place.error);
+        }
         const bool told = note->kind == PathNote::Kind::tell;
         run_.drop_note();
         if (told) return;  // one a cycle, or nobody sees it
     }
     if (run_.stuck() != ErrorId::none && run_.over()) {
         shown.place = {.error = run_.stuck(), .line = shown.line};
+        refused(active, shown.place);
         return queue_.finish_active(Outcome::error, run_.stuck());
     }
     if (goes) run_.go_over(active.id);
@@ -95,22 +99,14 @@ void AxisGroup::see_selection() noexcept {
 }
 
 /// It begins in its turn, and has no end: nothing waits behind it.
-bool AxisGroup::is_driven() const noexcept {
-    if (queue_.active().command.kind == GroupCommandKind::driven_path) return true;
+AxisRef AxisGroup::driver() const noexcept {
+    if (queue_.active().command.kind == GroupCommandKind::driven_path) return queue_.active().command.driver.master;
     for (std::size_t i = 0; i < queue_.waiting(); ++i)
-        if (queue_.waiting_at(i).command.kind == GroupCommandKind::driven_path) return true;
-    return false;
+        if (queue_.waiting_at(i).command.kind == GroupCommandKind::driven_path) return queue_.waiting_at(i).command.driver.master;
+    return {};
 }
 
-bool AxisGroup::driven_by(AxisRef axis) const noexcept {
-    const auto is = [&](const AcceptedGroupCommand& c) {
-        return c.command.kind == GroupCommandKind::driven_path && c.command.driver.master == axis;
-    };
-    if (queue_.has_active() && is(queue_.active())) return true;
-    for (std::size_t i = 0; i < queue_.waiting(); ++i)
-        if (is(queue_.waiting_at(i))) return true;
-    return false;
-}
+bool AxisGroup::driven_by(AxisRef axis) const noexcept { return axis.valid() && driver() == axis; }
 
 ErrorId AxisGroup::refuse_driven(const GroupCommand& command) const noexcept {
     if (command.buffer_mode > mcBuffered) return ErrorId::buffer_mode_not_supported;

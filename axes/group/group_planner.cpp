@@ -83,8 +83,7 @@ void GroupPlanner::place_moves() {
         }
         if (!first_) first_ = shape_of(move, end_, space_);
         if (first_->error != ErrorId::none || first_->empty)
-            (void)link_.verdicts.try_push(
-                {life_, move.id, first_->error, false, 0, 0, first_->jog_end, static_cast<std::uint8_t>(first_->jog_place)});
+            (void)link_.verdicts.try_push({life_, move.id, first_->error, false, 0, 0, first_->jog_end, first_->at});
         else if (!place(move, *first_)) return;  // later: no track is free yet
         else end_ = first_->end;
         moves_.pop_front();

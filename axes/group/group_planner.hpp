@@ -85,7 +85,7 @@ private:
     // Of a path that an axis drives, which is laid out as a whole: path_lay.cpp. True: it is, or will not be.
     [[nodiscard]] bool lay(const GroupOrder& move);
     [[nodiscard]] ErrorId lay_piece(const GroupOrder& move, const MoveShape& shape);
-    bool refuse_laid(const GroupOrder& move, ErrorId error);
+    bool refuse_laid(const GroupOrder& move, ErrorId error, const PathHindrance& at = {});
     bool lay_done(const GroupOrder& move);
     void look_ahead(Run& run, MC_PATH_SYNC_MODE mode) const;
     [[nodiscard]] GroupOrder piece_of(const GroupOrder& move) const;

@@ -132,6 +132,15 @@ ErrorId AxisGroup::refuse(const GroupCommand& command, Owner owner) const noexce
 }
 
 Submitted AxisGroup::submit(const GroupCommand& wanted, Owner owner) noexcept {
+    const auto answer = take(wanted, owner);
+    if (answer.error != ErrorId::none)
+        refused({0, owner, wanted, {}},
+                {.error = answer.error,
+                 .at = hindrance_of(answer.error, wanted, place_of(wanted), here(), config_.kinematics.get(), members_)});
+    return answer;
+}
+
+Submitted AxisGroup::take(const GroupCommand& wanted, Owner owner) noexcept {
     GroupCommand command = wanted;
     if (const auto error = in_units(command.dynamics, view_.reference_dynamics); error != ErrorId::none) return {0, error};
     if (const auto error = refuse(command, owner); error != ErrorId::none) return {0, error};
@@ -184,6 +193,7 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
     }
     if (command.kind == GroupCommandKind::jog) jog_.press(command, jog_lease_of(members_), jogging_of(command));
     view_.jog_end = JogEnd::none;
+    if (goes_a_way(command.kind)) view_.refusal = {.number = view_.refusal.number};
     const auto id = queue_.next_id();
     queue_.activate({id, owner, command, place});
     fire(GroupEvent::motion);

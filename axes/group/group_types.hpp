@@ -57,6 +57,10 @@ enum MC_TransitionVelocity : std::uint8_t { mcTVZero, mcTVLow, mcTVPrevious, mcT
 /// How the tool turns on the way.
 enum MC_OrientationMode : std::uint8_t { mcLinear, mcJointInterpolated, mcFixed, mcPathBased };
 
+/// Why a jog could not go on, or not begin: the distance that was asked for, a limit of a member, the arm's own (its joints' limits, its reach, rods that
+/// do not meet), a singularity, a room of the workspace, an orientation that the arm cannot take.
+enum class JogEnd : std::uint8_t { none, distance, member_limit, reach, singularity, workspace, orientation };
+
 /// What AuxPoint of an arc is.
 enum MC_CIRC_MODE : std::uint8_t { mcBORDER, mcCENTER, mcRADIUS };
 /// Which way round, seen against the normal of the arc's plane.

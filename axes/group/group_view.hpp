@@ -12,10 +12,6 @@ namespace taktwerk::axes {
 /// What held the path velocity down.
 enum class PathLimiter : std::uint8_t { none, command, axis, override_factor, setup_velocity };
 
-/// Why a jog could not go on, or not begin: the distance that was asked for, a limit of a member, the arm's own (its joints' limits, its reach, rods that
-/// do not meet), a singularity.
-enum class JogEnd : std::uint8_t { none, distance, member_limit, reach, singularity, workspace };
-
 /// Of a group on a frame that moves.
 struct TrackView {
     AxisRef axis{};            ///< whose way it goes with; invalid: it does not
@@ -30,6 +26,15 @@ struct PathSlave {
     AxisRef axis{};
     CommandId id = 0;  ///< of the axis; 0: none
     bool in_sync = false;
+};
+
+/// What a group has refused, of one command: when it was given, or in its turn, before anything of it moved; or the end of a stored path with an error.
+struct GroupRefusal {
+    std::uint32_t number = 0;  ///< counts refusals from 1
+    GroupCommandKind kind = GroupCommandKind::none;
+    CommandId id = 0;             ///< 0: refused when it was given
+    const void* block = nullptr;  ///< that gave it, to be named to people; never followed
+    PathPlace why{};              ///< error none: nothing has been refused since another motion began
 };
 
 struct GroupView {
@@ -64,13 +69,15 @@ struct GroupView {
 
     // along the path
     double path_velocity = 0, path_acceleration = 0;
-    double path_deviation = 0;  ///< u by which the tool's point is not where it should be; while it moves
+    std::uint16_t path_members = 0;  ///< places of those whose own ways its length is; 0: it is the way of the tool's point
+    double path_deviation = 0;       ///< u by which the tool's point is not where it should be; while it moves
     PathLimiter limiter = PathLimiter::none;
     std::uint8_t limiting_place = 0;  ///< PathLimiter::axis: whose limit
     double tool_limit = 0;            ///< u/s of the tool's point, in set-up mode; 0: none
 
-    JogEnd jog_end = JogEnd::none;   ///< of the last jog, until something else moves the group
-    std::uint8_t jog_end_place = 0;  ///< JogEnd::member_limit: whose
+    JogEnd jog_end = JogEnd::none;  ///< of the last jog, until something else moves the group
+    PathHindrance jog_hindrance{};  ///< JogEnd::member_limit: whose; workspace: which room
+    GroupRefusal refusal{};         ///< the last one, until another motion begins; not of a person's jog, who has his answer
 
     // of the active command
     GroupCommandKind active_kind = GroupCommandKind::none;

@@ -10,7 +10,7 @@ std::string_view name(PathLimiter limiter) noexcept {
 }
 
 std::string_view name(JogEnd end) noexcept {
-    constexpr std::array<std::string_view, 6> names{"none", "distance", "axis_limit", "reach", "singularity", "workspace"};
+    constexpr std::array<std::string_view, 7> names{"none", "distance", "axis_limit", "reach", "singularity", "workspace", "orientation"};
     return names[static_cast<std::size_t>(end)];
 }
 

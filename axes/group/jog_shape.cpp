@@ -27,15 +27,21 @@ double size_of(double value) noexcept { return std::max(1.0, std::abs(value)); }
 /// What keeps a jog from going on.
 struct Hindrance {
     JogEnd end = JogEnd::none;
-    std::size_t place = 0;
+    PathHindrance at{};
 };
+
+Hindrance limit_of(std::size_t place) noexcept {
+    Hindrance by{JogEnd::member_limit, {}};
+    by.at.place = static_cast<std::uint8_t>(place);
+    return by;
+}
 
 MoveShape stands(const MoveEnd& from, Hindrance why = {}) {
     MoveShape shape;
     shape.empty = true;
     shape.end = from;
     shape.jog_end = why.end;
-    shape.jog_place = why.place;
+    shape.at = why.at;
     return shape;
 }
 
@@ -81,7 +87,8 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         const double room = sense * (end[k] - q);
         const bool at_end = !(room > no_way * size_of(q));
         if (at_end || !arm_lets(k, sense, from.members, space)) {
-            if (why.end == JogEnd::none || why.end == JogEnd::distance) why = {gone && at_end ? JogEnd::distance : JogEnd::member_limit, k};
+            if (why.end == JogEnd::none || why.end == JogEnd::distance)
+                why = gone && at_end ? Hindrance{JogEnd::distance, {}} : limit_of(k);
             continue;
         }
         rate[k] = wanted * limits.velocity;
@@ -112,7 +119,8 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
     if (const double inside = inside_until(time, from.members, rate, move.place.carried.tool, space); inside < time) {
         first = space.members;
         time = inside;
-        why = {JogEnd::workspace};
+        const auto wall = space.arm->forward(joints_of(at(inside)), move.place.carried.tool).pose.position;
+        why = {JogEnd::workspace, room_at(*space.workspace, wall)};
     }
     MoveShape shape;
     shape.end.members = at(time);
@@ -126,7 +134,7 @@ MoveShape jog_of_axes(const GroupOrder& move, const MoveEnd& from, const MoveSpa
         size = std::max(size, std::abs(a[i]));
     }
     const double length = (b - a).norm();
-    if (!(length > no_way * size)) return stands(from, why.end == JogEnd::none ? Hindrance{JogEnd::reach} : why);
+    if (!(length > no_way * size)) return stands(from, why.end == JogEnd::none ? Hindrance{JogEnd::reach, {}} : why);
     if (space.arm != nullptr) shape.end.configuration.branch = space.arm->configuration(joints_of(shape.end.members)).branch;
     shape.element = PathElement::line(a, b);
     shape.members = {from.members};
@@ -213,22 +221,24 @@ private:
         const Pose pose = pose_of(position_of(start_) + t * rate_.linear, turn_by(t * rate_.angular) * orientation_of(start_));
         const AxisSolution stand = space_.arm->inverse(pose, tool_, from_.configuration, joints_of(near_));
         if (stand.miss.fault == KinematicFault::joint_limit)
-            return hindered(JogEnd::member_limit, static_cast<std::size_t>(std::max(stand.miss.joint, 0)));
-        if (!stand.ok()) return hindered(JogEnd::reach);
+            return hindered(limit_of(static_cast<std::size_t>(std::max(stand.miss.joint, 0))));
+        if (stand.miss.fault == KinematicFault::orientation) return hindered({JogEnd::orientation, {}});
+        if (!stand.ok()) return hindered({JogEnd::reach, {}});
         q = members_of(stand.axes);
-        if (turn_between(near_, q) > most_turn) return hindered(JogEnd::singularity);  // of any step: the joints would have to jump
+        if (turn_between(near_, q) > most_turn) return hindered({JogEnd::singularity, {}});  // of any step: the joints would have to jump
         for (std::size_t k = 0; k < space_.members; ++k) {
             // A hair inside, so that the arm's last digits do not lead out.
             const auto& l = space_.limits[k];
             const double high = std::max(l.high - 1e-9 * size_of(l.high), from_.members[k]);
             const double low = std::min(l.low + 1e-9 * size_of(l.low), from_.members[k]);
-            if (q[k] > high || q[k] < low) return hindered(JogEnd::member_limit, k);
+            if (q[k] > high || q[k] < low) return hindered(limit_of(k));
         }
         const double measure = space_.arm->singularity(stand.axes).measure;
-        return (measure >= nearest_measure && measure >= std::min(jog_margin, measure_) * (1 - 1e-9)) || hindered(JogEnd::singularity);
+        return (measure >= nearest_measure && measure >= std::min(jog_margin, measure_) * (1 - 1e-9)) ||
+               hindered({JogEnd::singularity, {}});
     }
-    bool hindered(JogEnd by, std::size_t place = 0) noexcept {
-        why_ = {by, place};
+    bool hindered(const Hindrance& by) noexcept {
+        why_ = by;
         return false;
     }
     void take(double t, const MemberVector& q) {
@@ -260,10 +270,13 @@ private:
 };
 
 /// Whether the members stand as the arm would put them there, and not in a singularity.
-ErrorId refuse_start(const MoveEnd& from, const MoveSpace& space, const Pose& tool, const Pose& here) {
+ErrorId refuse_start(const MoveEnd& from, const MoveSpace& space, const Pose& tool, const Pose& here, PathHindrance& at) {
     if (space.arm->singularity(joints_of(from.members)).measure < nearest_measure) return ErrorId::singular_path;
     const AxisSolution stand = space.arm->inverse(here, tool, from.configuration, joints_of(from.members));
-    if (stand.miss.fault == KinematicFault::joint_limit) return ErrorId::beyond_software_limit;
+    if (stand.miss.fault == KinematicFault::joint_limit) {
+        at = limit_of(static_cast<std::size_t>(std::max(stand.miss.joint, 0))).at;
+        return ErrorId::beyond_software_limit;
+    }
     if (!stand.ok()) return ErrorId::out_of_reach;
     const MemberVector q = members_of(stand.axes);
     for (std::size_t k = 0; k < space.members; ++k)
@@ -286,23 +299,21 @@ MoveShape jog_of_pose(const GroupOrder& move, const MoveEnd& from, const MoveSpa
     }
     if (reach.angular > 0 && angular > 0)
         most = std::min(most, (reach.angular - turned_since(pressed.pose, here.pose, rate, move.way)) / angular);
-    if (!(most > 0)) return stands(from, {JogEnd::distance});
+    if (!(most > 0)) return stands(from, {JogEnd::distance, {}});
     if (linear == 0 && angular == 0) return stands(from);
-    if (const auto error = refuse_start(from, space, tool, here.pose); error != ErrorId::none) {
-        MoveShape shape;
-        shape.error = error;
-        return shape;
-    }
+    MoveShape refused;
+    refused.error = refuse_start(from, space, tool, here.pose, refused.at);
+    if (refused.error != ErrorId::none) return refused;
     PoseWalk walk(from, space, tool, here.pose, rate);
     double time = walk.reach(most);
-    Hindrance why = time < most ? walk.why() : Hindrance{JogEnd::distance};
+    Hindrance why = time < most ? walk.why() : Hindrance{JogEnd::distance, {}};
     if (space.workspace != nullptr) {
         const auto at = [&](double t) {
             const Eigen::Vector3d p = position_of(here.pose) + t * rate.linear;
             return std::array<double, 3>{p.x(), p.y(), p.z()};
         };
         const double inside = jog_inside_until(*space.workspace, time, at, [&](double) { return linear; });
-        if (inside < time) why = {JogEnd::workspace};
+        if (inside < time) why = {JogEnd::workspace, room_at(*space.workspace, at(inside))};
         time = inside;
     }
     const double size = position_of(here.pose).norm();
@@ -347,10 +358,18 @@ MoveShape jog_shape(const GroupOrder& move, const MoveEnd& from, const MoveSpace
         if (from.members[k] > space.limits[k].high || from.members[k] < space.limits[k].low) {
             MoveShape shape;
             shape.error = ErrorId::beyond_software_limit;
+            shape.at = limit_of(k).at;
             return shape;
         }
-    if (move.command.frame == mcACS) return jog_of_axes(move, from, space);
-    return space.arm != nullptr ? jog_of_pose(move, from, space) : stands(from);
+    MoveShape shape = move.command.frame == mcACS ? jog_of_axes(move, from, space)
+                      : space.arm != nullptr      ? jog_of_pose(move, from, space)
+                                                  : stands(from);
+    // Of a distance that is none at all nothing has been gone, and nobody would have noticed.
+    if (shape.empty && shape.jog_end == JogEnd::distance && move.way == 0 && move.target == from.members) {
+        shape.empty = false;
+        shape.error = ErrorId::invalid_position;
+    }
+    return shape;
 }
 
 }  // namespace taktwerk::axes

@@ -9,7 +9,7 @@ namespace taktwerk::axes {
 /// Nearer to a singularity than this measure no jog of the pose goes; from nearer it leads away only. A path of commands goes as near as 0.01.
 inline constexpr double jog_margin = 0.02;
 
-/// `empty`: it stands at the end already. Errors: beyond_software_limit (a member stands outside its limits);
+/// `empty`: it stands at the end already. Errors: beyond_software_limit (a member stands outside its limits), invalid_position (a distance that is shorter than any way);
 /// of the pose singular_path (nearer than a measure of 0.01), out_of_reach (the members stand as no pose has them: a beam that is askew).
 [[nodiscard]] MoveShape jog_shape(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space);
 

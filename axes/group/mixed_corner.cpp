@@ -75,7 +75,7 @@ bool curve_inside(const PathElement& curve, const Pose& tool, const MoveSpace& s
     section.length = curve.length();
     RunSection run;
     run.carried.tool = tool;
-    return refuse_room(section, run, space) == ErrorId::none;
+    return !leaves_rooms(section, run, space);
 }
 
 std::optional<PathElement> curve_of(const CornerSide& before, const CornerSide& behind, double first, double second, const Pose& tool,

@@ -24,6 +24,10 @@ class Kinematics;
 [[nodiscard]] ErrorId refuse_reach(const GroupCommand& command, const CommandPlace& place, const JointVector& here,
                                    const Kinematics* arm) noexcept;
 
+/// Of a command that was refused with this when it was given: whose limit, which member, where its target is.
+[[nodiscard]] PathHindrance hindrance_of(ErrorId error, const GroupCommand& command, const CommandPlace& place, const JointVector& here,
+                                         const Kinematics* arm, const GroupMembers& members) noexcept;
+
 /// It is there already: in ACS.
 [[nodiscard]] bool goes_nowhere(const GroupCommand& command, const JointVector& here, const GroupMembers& members) noexcept;
 

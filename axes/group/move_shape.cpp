@@ -22,6 +22,12 @@ bool turns(const Kinematics& arm) noexcept {
     return which[3] || which[4] || which[5];
 }
 
+/// Why a place cannot be gone.
+struct Refusal {
+    ErrorId error = ErrorId::none;
+    PathHindrance at{};
+};
+
 ErrorId error_of(const Miss& miss) noexcept {
     switch (miss.fault) {
         case KinematicFault::none: return ErrorId::none;
@@ -31,12 +37,42 @@ ErrorId error_of(const Miss& miss) noexcept {
     }
 }
 
-ErrorId within(const MemberVector& at, const MoveSpace& space) noexcept {
+Refusal refusal_of(const Miss& miss) noexcept {
+    Refusal refusal{error_of(miss), {}};
+    if (miss.fault == KinematicFault::joint_limit && miss.joint >= 0) refusal.at.place = static_cast<std::uint8_t>(miss.joint);
+    return refusal;
+}
+
+Refusal within(const MemberVector& at, const MoveSpace& space) noexcept {
     for (std::size_t i = 0; i < space.members; ++i) {
         const double digits = 1e-12 * std::max(1.0, std::abs(at[i]));
-        if (at[i] > space.limits[i].high + digits || at[i] < space.limits[i].low - digits) return ErrorId::beyond_software_limit;
+        const auto& limits = space.limits[i];
+        if (at[i] <= limits.high + digits && at[i] >= limits.low - digits) continue;
+        Refusal refusal{ErrorId::beyond_software_limit, {}};
+        refusal.at.place = static_cast<std::uint8_t>(i);
+        refusal.at.limit_known = true;
+        refusal.at.position = at[i];
+        refusal.at.limit = at[i] > limits.high ? limits.high : limits.low;
+        return refusal;
     }
-    return space.arm != nullptr ? error_of(space.arm->limits_of(joints_of(at))) : ErrorId::none;
+    return space.arm != nullptr ? refusal_of(space.arm->limits_of(joints_of(at))) : Refusal{};
+}
+
+/// The first place of a way that is refused with this, between one that is not and one that is.
+template <class Look>
+double first_refused(double good, double bad, Refusal& refusal, const Look& look) {
+    constexpr int halvings = 40;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = (good + bad) / 2;
+        const Refusal there = look(middle);
+        if (there.error != refusal.error) {
+            good = middle;
+            continue;
+        }
+        bad = middle;
+        if (!refusal.at.limit_known || refusal.at.place != there.at.place) refusal.at = there.at;
+    }
+    return bad;
 }
 
 /// Whether the arm puts the members where they stand. Those of a beam that is askew it does not: they would jump onto the path.
@@ -53,10 +89,23 @@ Configuration any_turns(Branch branch) noexcept {
     return c;
 }
 
-MoveShape refused(ErrorId error) {
+MoveShape refused(const Refusal& refusal) {
     MoveShape shape;
-    shape.error = error;
+    shape.error = refusal.error;
+    shape.at = refusal.at;
     return shape;
+}
+MoveShape refused(ErrorId error) { return refused(Refusal{error, {}}); }
+
+/// u of the tool's point that a path of poses is long: turns count in its own length, too.
+double way_of_point(const PathElement& element) noexcept {
+    const double share = element.at(0).first.head<3>().norm();
+    return share > 1e-9 ? share * element.length() : 0;
+}
+
+void put_point(PathHindrance& at, const std::array<double, 3>& point) noexcept {
+    at.in_space = true;
+    at.point = point;
 }
 
 PathSection whole(const MoveShape& shape) {
@@ -67,11 +116,26 @@ PathSection whole(const MoveShape& shape) {
     return section;
 }
 
+/// Where on it a line of the members is refused.
+void find_on_line(Refusal& refusal, const MemberVector& to, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space) {
+    MemberVector q = from.members;
+    refusal.at.on_path = true;
+    refusal.at.part = first_refused(0, 1, refusal, [&](double part) {
+        for (std::size_t i = 0; i < space.members; ++i) q[i] = from.members[i] + part * (to[i] - from.members[i]);
+        return within(q, space);
+    });
+    if (space.arm == nullptr) return;
+    const ForwardResult there = space.arm->forward(joints_of(q), carried.tool);
+    if (there.miss.ok()) put_point(refusal.at, there.pose.position);
+}
+
 /// The members on a straight line of their own.
 MoveShape joint_line(const MemberVector& to, const CarriedTool& carried, const MoveEnd& from, const MoveSpace& space) {
+    if (Refusal refusal = within(to, space); refusal.error != ErrorId::none) {
+        find_on_line(refusal, to, carried, from, space);
+        return refused(refusal);
+    }
     MoveShape shape;
-    shape.error = within(to, space);
-    if (shape.error != ErrorId::none) return shape;
     PathVector a = PathVector::Zero(), b = PathVector::Zero();
     for (std::size_t i = 0; i < space.members; ++i) {
         a[static_cast<Eigen::Index>(i)] = from.members[i];
@@ -85,7 +149,10 @@ MoveShape joint_line(const MemberVector& to, const CarriedTool& carried, const M
     shape.members = {from.members};
     RunSection run;
     run.carried = carried;
-    shape.error = refuse_room(whole(shape), run, space);
+    if (const auto wall = leaves_rooms(whole(shape), run, space)) {
+        shape.error = ErrorId::outside_workspace;
+        shape.at = *wall;
+    }
     return shape;
 }
 
@@ -145,19 +212,39 @@ void walk_along(MoveShape& shape, const CarriedTool& carried, const MoveEnd& fro
     run.through_arm = true;
     run.carried = carried;
     run.configuration = from.configuration;
-    MemberVector near = from.members;
+    MemberVector near = from.members, q{};
+    const auto look = [&](double s) {
+        const WayPoint w = way_point(all, run, s, space.arm, space.members, near);
+        q = w.q;
+        Refusal refusal = refusal_of(w.miss);
+        if (refusal.error == ErrorId::none && space.arm->singularity(joints_of(q)).measure < least_singularity)
+            refusal.error = ErrorId::singular_path;
+        if (refusal.error == ErrorId::none) refusal = within(q, space);
+        if (refusal.error == ErrorId::none && s == 0 && !same_place(q, from.members, space.members)) refusal.error = ErrorId::out_of_reach;
+        return refusal;
+    };
     for (int i = 0; i <= steps; ++i) {
-        const WayPoint w = way_point(all, run, all.length * i / steps, space.arm, space.members, near);
-        shape.error = error_of(w.miss);
-        if (shape.error == ErrorId::none && space.arm->singularity(joints_of(w.q)).measure < least_singularity)
-            shape.error = ErrorId::singular_path;
-        if (shape.error == ErrorId::none) shape.error = within(w.q, space);
-        if (shape.error == ErrorId::none && i == 0 && !same_place(w.q, from.members, space.members)) shape.error = ErrorId::out_of_reach;
-        if (shape.error != ErrorId::none) return;
-        shape.members.push_back(near = w.q);
+        double s = all.length * i / steps;
+        if (Refusal refusal = look(s); refusal.error != ErrorId::none) {
+            if (i > 0) s = first_refused(all.length * (i - 1) / steps, s, refusal, look);
+            shape.error = refusal.error;
+            shape.at = refusal.at;
+            shape.at.on_path = true;
+            shape.at.part = s / all.length;
+            shape.at.length = way_of_point(shape.element);
+            shape.at.position = shape.at.limit;
+            const auto p = shape.element.at(s).at;
+            put_point(shape.at, {p[0], p[1], p[2]});
+            return;
+        }
+        shape.members.push_back(near = q);
     }
     shape.end = {near, from.configuration};
-    shape.error = refuse_room(all, run, space);
+    if (const auto wall = leaves_rooms(all, run, space)) {
+        shape.error = ErrorId::outside_workspace;
+        shape.at = *wall;
+        shape.at.length = way_of_point(shape.element);
+    }
 }
 
 MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace& space) {
@@ -173,49 +260,56 @@ MoveShape shape_of(const GroupOrder& move, const MoveEnd& from, const MoveSpace&
     if (space.arm == nullptr) return refused(ErrorId::no_kinematics);
     const Pose& tool = move.place.carried.tool;
     const ForwardResult here = space.arm->forward(joints_of(from.members), tool);
-    if (!here.miss.ok()) return refused(error_of(here.miss));
+    if (!here.miss.ok()) return refused(refusal_of(here.miss));
     const Pose start = here.pose, goal = goal_of(move, start, *space.arm);
     // A path keeps the way the arm stands (G-042): one that is told to end otherwise is none.
     const auto& wanted = move.command.wanted;
     if (!direct && !answers(from.configuration.branch, wanted.branch)) return refused(ErrorId::out_of_reach);
     Configuration asked = direct ? wanted : from.configuration;
     const AxisSolution there = space.arm->inverse(goal, tool, asked, joints_of(from.members));
-    if (!there.ok()) return refused(error_of(there.miss));
+    Refusal target = refusal_of(there.miss);
+    put_point(target.at, goal.position);
+    if (direct && !there.ok()) return refused(target);
     if (direct) return joint_line(members_of(there.axes), move.place.carried, from, space);
 
     MoveShape shape;
     shape.through_arm = true;
     shape.chart = chart_at(start, *space.arm);
     const Eigen::Vector3d turn = rotation_between(orientation_of(start), orientation_of(goal));
-    if (turn.norm() > std::numbers::pi - 1e-9) return refused(ErrorId::half_turn);  // G-043: which way round is nobody's choice
+    if (turn.norm() > std::numbers::pi - 1e-9)
+        return refused(there.ok() ? Refusal{ErrorId::half_turn, {}} : target);  // G-043: which way round is nobody's choice
     PathVector a = PathVector::Zero(), b = PathVector::Zero();
     a.head<3>() = position_of(start);
     b.head<3>() = position_of(goal);
     b.segment<3>(3) = shape.chart.lever * turn;
     if (is_circular(kind)) {
         auto arc = arc_of(move, start, a, b);
-        if (!arc.ok()) return refused(ErrorId::invalid_arc);
+        if (!arc.ok()) return refused(there.ok() ? Refusal{ErrorId::invalid_arc, {}} : target);
         shape.element = arc.value();
     } else {
         // Nothing but the last digits of going through the arm and back.
         shape.empty = (b - a).norm() <= 1e-12 * std::max(1.0, a.norm());
         shape.end = from;
-        if (shape.empty) return shape;
+        if (shape.empty) return there.ok() ? shape : refused(target);
         shape.element = PathElement::line(a, b);
     }
     walk(shape, move.place.carried, from, space);
-    return shape;
+    if (there.ok() || shape.error == target.error) return shape;
+    target.at.on_path = true;  // the end is refused, whatever else is on the way
+    target.at.part = 1;
+    target.at.length = way_of_point(shape.element);
+    return refused(target);
 }
 
 ErrorId refuse_blend(const PathSection& blend, const RunSection& at, const MoveEnd& near, const MoveSpace& space) {
-    if (const auto error = refuse_room(blend, at, space); error != ErrorId::none) return error;
+    if (leaves_rooms(blend, at, space)) return ErrorId::outside_workspace;
     if (!at.through_arm) return ErrorId::none;  // between two lines inside the limits it is inside
     constexpr int steps = 16;
     for (int i = 0; i <= steps; ++i) {
         const WayPoint w = way_point(blend, at, blend.begin + blend.length * i / steps, space.arm, space.members, near.members);
         if (const auto error = error_of(w.miss); error != ErrorId::none) return error;
         if (space.arm->singularity(joints_of(w.q)).measure < least_singularity) return ErrorId::singular_path;
-        if (const auto error = within(w.q, space); error != ErrorId::none) return error;
+        if (const auto refusal = within(w.q, space); refusal.error != ErrorId::none) return refusal.error;
     }
     return ErrorId::none;
 }

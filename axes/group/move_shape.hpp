@@ -26,7 +26,7 @@ struct MoveShape {
     std::vector<MemberVector> members;  ///< along it, at even distances
     MoveEnd end;
     JogEnd jog_end = JogEnd::none;  ///< of a jog that stands: why
-    std::size_t jog_place = 0;      ///< JogEnd::member_limit: whose, by rank
+    PathHindrance at{};             ///< of `error`, of `jog_end`: members by rank
 };
 
 struct MoveSpace {

@@ -50,11 +50,8 @@ ErrorId PathDrive::refuse(const PathDriver& driver, const GroupMembers& members)
     if (driver.numerator == 0 || driver.denominator == 0) return ErrorId::invalid_ratio;
     if (driver.master.index >= axes_.size() || members.contains(driver.master)) return ErrorId::invalid_master;
     // Who follows a member follows the path.
-    AxisRef leader = axes_[driver.master.index].view().master;
-    for (std::size_t i = 0; i < axes_.size() && leader.index < axes_.size(); ++i) {
-        if (members.contains(leader)) return ErrorId::coupling_loop;
-        leader = axes_[leader.index].view().master;
-    }
+    for (std::size_t i = 0; i < most_members; ++i)
+        if (members.has(i) && members.axis(i).is_followed_by(axes_[driver.master.index])) return ErrorId::coupling_loop;
     return leading_reading(axes_[driver.master.index]).usable ? ErrorId::none : ErrorId::invalid_master;
 }
 

@@ -86,7 +86,7 @@ bool GroupPlanner::lay(const GroupOrder& move) {
         if (w.item.kind == PathItem::Kind::end) return lay_done(move);
         if (stands_for(w.item)) return refuse_laid(move, ErrorId::path_stands);
         const MoveShape shape = segment_of(w.item, w.place, end_, space_);
-        if (shape.error != ErrorId::none) return refuse_laid(move, shape.error);
+        if (shape.error != ErrorId::none) return refuse_laid(move, shape.error, shape.at);
         if (!shape.empty) {
             if (!w.laid && claim(move) == nullptr) return false;  // not yet
             if (const auto error = lay_piece(move, shape); error != ErrorId::none) return refuse_laid(move, error);
@@ -114,10 +114,11 @@ ErrorId GroupPlanner::lay_piece(const GroupOrder& move, const MoveShape& shape) 
 }
 
 /// As if it had not been: the next command begins where this one would have.
-bool GroupPlanner::refuse_laid(const GroupOrder& move, ErrorId error) {
+bool GroupPlanner::refuse_laid(const GroupOrder& move, ErrorId error, const PathHindrance& at) {
     const auto& place = walk_->item.place;
     const bool named = walk_->item.kind == PathItem::Kind::fault && place.line != 0;
-    (void)link_.verdicts.try_push({life_, move.id, error, false, 0, named ? place.line : walk_->item.line});
+    (void)link_.verdicts.try_push(
+        {life_, move.id, error, false, 0, named ? place.line : walk_->item.line, JogEnd::none, named ? place.at : at});
     end_ = walk_->began;
     if (walk_->laid) runs_[--next_ % 2].reset();
     walk_.reset();

@@ -129,15 +129,16 @@ bool PathRun::send(CommandId id, const GroupCommand& command, const CommandPlace
 
 std::optional<PathPlace> PathRun::verdict(CommandId id) const noexcept {
     for (const auto& v : inside_->verdicts.said)
-        if (v.id == id && v.life == inside_->life && !v.standing) return PathPlace{.error = v.error, .line = v.line};
+        if (v.id == id && v.life == inside_->life && !v.standing)
+            return PathPlace{.error = v.error, .line = v.line, .at = inside_->by_place(v.at)};
     return std::nullopt;
 }
 
-std::pair<JogEnd, std::uint8_t> PathRun::jog_end(CommandId id) const noexcept {
+JogEnd PathRun::jog_end(CommandId id) const noexcept {
     const auto& in = *inside_;
     for (const auto& v : in.verdicts.said)
-        if (v.id == id && v.life == in.life && v.jog_end != JogEnd::none) return {v.jog_end, in.places[v.jog_place]};
-    return {};
+        if (v.id == id && v.life == in.life && v.jog_end != JogEnd::none) return v.jog_end;
+    return JogEnd::none;
 }
 
 void PathRun::override_with(const Override& factors) noexcept {
@@ -210,7 +211,10 @@ bool PathRun::at_end_of_run() const noexcept {
 const PathNote* PathRun::note() noexcept {
     auto& in = *inside_;
     for (PathNote next; !in.note && in.link.notes.try_pop(next);)
-        if (next.life == in.life) in.note = next;
+        if (next.life == in.life) {
+            next.place.at = in.by_place(next.place.at);
+            in.note = next;
+        }
     if (!exists_ || !in.note) return nullptr;
     const auto& n = *in.note;
     if (n.kind != PathNote::Kind::tell) return n.run == in.begun && at_end_of_run() ? &n : nullptr;
@@ -243,6 +247,7 @@ void PathRun::clear() noexcept {
     exists_ = arrived_ = stops_ = false;
     stuck_ = fault_ = ErrorId::none;
     limiter_ = PathLimiter::none;
+    members_on_way_ = 0;
 }
 
 /// The next run may be known to be stuck long before this one is over.
@@ -312,6 +317,9 @@ void PathRun::look() noexcept {
             return;
         }
         in.q = in.at.q;
+        members_on_way_ = 0;
+        for (std::size_t k = 0; k < in.members && !run.through_arm; ++k)
+            if (in.at.first[k] != 0) members_on_way_ = static_cast<std::uint16_t>(members_on_way_ | 1u << in.places[k]);
         for (std::size_t k = 0; k < in.members; ++k) {
             in.velocity[k] = in.at.first[k] * s_.velocity;
             in.acceleration[k] = in.at.first[k] * s_.acceleration + in.at.second[k] * s_.velocity * s_.velocity;

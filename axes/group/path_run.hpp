@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "axes/group/group_config.hpp"
 #include "axes/group/group_equipment.hpp"
@@ -51,8 +50,8 @@ public:
               const JointVector* pressed = nullptr, double way = 0) noexcept;
     /// What the planner has said of a command that will not be gone; none: there is no way to go. Nothing: it has not, or the way is there.
     [[nodiscard]] std::optional<PathPlace> verdict(CommandId id) const noexcept;
-    /// Of a jog that had nothing to go: why, and of a member's limit whose place it is.
-    [[nodiscard]] std::pair<JogEnd, std::uint8_t> jog_end(CommandId id) const noexcept;
+    /// Of a jog that had nothing to go: why.
+    [[nodiscard]] JogEnd jog_end(CommandId id) const noexcept;
     /// Goes over to the way of this command if it is prepared. Asked for each cycle, at rest.
     [[nodiscard]] bool begin(CommandId id) noexcept;
     // Of a path that an axis drives (driven_run.cpp):
@@ -120,6 +119,8 @@ public:
     [[nodiscard]] double remaining() const noexcept { return remaining_; }
     /// s, of the stretch that runs; 0 where it does not lead to the end.
     [[nodiscard]] double remaining_time() const noexcept;
+    /// GroupView::path_members.
+    [[nodiscard]] std::uint16_t members_on_way() const noexcept { return members_on_way_; }
     [[nodiscard]] PathLimiter limiter() const noexcept { return limiter_; }
     [[nodiscard]] std::uint8_t narrowest() const noexcept { return narrowest_; }
     /// Plans that came after their place had been passed.
@@ -154,6 +155,7 @@ private:
     CornerPassed corner_ = CornerPassed::none;
     PathLimiter limiter_ = PathLimiter::none;
     std::uint8_t narrowest_ = 0;
+    std::uint16_t members_on_way_ = 0;
 };
 
 }  // namespace taktwerk::axes

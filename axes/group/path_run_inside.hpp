@@ -69,6 +69,11 @@ struct PathRun::Inside {
         return nullptr;
     }
 
+    /// The planner knows members by their rank alone.
+    [[nodiscard]] PathHindrance by_place(PathHindrance at) const noexcept {
+        if (at.place < places.size()) at.place = places[at.place];
+        return at;
+    }
     /// It is on a run.
     [[nodiscard]] bool goes() const noexcept { return player.has_value() || drive.on(); }
     [[nodiscard]] std::uint32_t part() const noexcept { return player ? player->part() : driven_part; }

@@ -1,6 +1,7 @@
 #pragma once
 // What a stored path asks for beside motion, and what everyone sees of one. Plain data. MC_PathSelect, MC_MovePath: docs/motion/group-decisions.md.
 
+#include <array>
 #include <cstdint>
 
 #include "axes/words/types.hpp"
@@ -50,12 +51,28 @@ struct PathRequest {
     std::uint32_t line = 0;    ///< of the text, that asks for it
 };
 
-/// Where in the text, and why.
+/// What a path meets where it cannot be gone, and where that is.
+struct PathHindrance {
+    static constexpr std::uint8_t none = 0xFF;
+    std::uint8_t room =
+        none;  ///< outside_workspace: the one that is kept free and entered, else the one that is left; its place in the workspace
+    std::uint8_t place = none;      ///< the member whose limit it is (beyond_software_limit), or that is not ready (not_homed, not_powered)
+    bool on_path = false;           ///< `part` is known
+    bool in_space = false;          ///< `point` is
+    bool limit_known = false;       ///< `position` and `limit` are
+    double part = 0;                ///< 0 to 1, of the command's own way, from where it begins
+    double length = 0;              ///< u of that way of the tool's point; 0: it is one of axes, or of turns
+    std::array<double, 3> point{};  ///< X Y Z of the tool's point in the machine (MCS), u
+    double position = 0, limit = 0;  ///< where that member would be, and what it may: in its own unit
+};
+
+/// Where in the text and on the path, and why.
 struct PathPlace {
     ErrorId error = ErrorId::none;
     std::uint32_t line = 0;    ///< from 1; 0: nowhere
     std::uint32_t column = 0;  ///< bytes, from 1; 0: the line as a whole
     std::uint16_t fault = 0;   ///< ErrorId::path_program: of the language that it is written in (gcode::FaultKind)
+    PathHindrance at{};
 };
 
 /// Of a stored path: what MC_PathSelect made of it.

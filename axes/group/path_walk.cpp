@@ -25,9 +25,9 @@ PathNote::Kind kind_of(PathItem::Kind kind) noexcept {
 }
 bool moves(const PathItem& item) noexcept { return item.kind == PathItem::Kind::line || item.kind == PathItem::Kind::arc; }
 
-void becomes_fault(PathItem& item, ErrorId error) noexcept {
+void becomes_fault(PathItem& item, ErrorId error, const PathHindrance& at = {}) noexcept {
     item.kind = PathItem::Kind::fault;
-    item.place = {.error = error, .line = item.line};
+    item.place = {.error = error, .line = item.line, .at = at};
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ bool GroupPlanner::walk(const GroupOrder& move) {
         if (moves(w.item)) {
             if (!w.shape) w.shape = segment_of(w.item, w.place, end_, space_);
             if (w.shape->error != ErrorId::none) {
-                becomes_fault(w.item, w.shape->error);
+                becomes_fault(w.item, w.shape->error, w.shape->at);
                 continue;
             }
             if (!w.shape->empty && !place_piece(move)) return false;

@@ -25,30 +25,40 @@ double inside_until(double most, const MemberVector& from, const MemberVector& r
         [&](double t) { return swing * speed_of(space.arm->moving(at(t), joints_of(rate), tool).velocity); });
 }
 
-ErrorId refuse_room(const PathSection& section, const RunSection& at, const MoveSpace& space) {
-    if (space.workspace == nullptr || space.arm == nullptr) return ErrorId::none;
+PathHindrance room_at(const Workspace& workspace, const std::array<double, 3>& point) noexcept {
+    PathHindrance at;
+    at.room = static_cast<std::uint8_t>(std::min<std::size_t>(workspace.nearest_wall(point), PathHindrance::none));
+    at.in_space = true;
+    at.point = point;
+    return at;
+}
+
+std::optional<PathHindrance> leaves_rooms(const PathSection& section, const RunSection& at, const MoveSpace& space) {
+    if (space.workspace == nullptr || space.arm == nullptr) return std::nullopt;
     const double length = section.length;
-    double inside = length;
+    const auto look = [&](const auto& point, const auto& fastest) -> std::optional<PathHindrance> {
+        const double inside = inside_until(*space.workspace, length, point, fastest);
+        if (!(inside < length)) return std::nullopt;
+        PathHindrance wall = room_at(*space.workspace, point(inside));
+        wall.on_path = true;
+        wall.part = inside / length;
+        return wall;
+    };
     if (at.through_arm) {
         // Of a path of poses s is the way of the point, and of its turns beside it.
-        inside = inside_until(
-            *space.workspace, length,
-            [&](double s) {
-                const auto p = section.at(section.begin + s).at;
-                return std::array<double, 3>{p[0], p[1], p[2]};
-            },
-            [](double) { return 1.0; });
-    } else {
-        const auto along = [&](double s) { return way_point(section, at, section.begin + s, space.arm, space.members, {}, 1); };
-        if (!space.arm->forward(joints_of(along(0).q), at.carried.tool).miss.ok()) return ErrorId::none;
-        inside = inside_until(
-            *space.workspace, length, [&](double s) { return space.arm->forward(joints_of(along(s).q), at.carried.tool).pose.position; },
-            [&](double s) {
-                const auto w = along(s);
-                return swing * speed_of(space.arm->moving(joints_of(w.q), joints_of(w.first), at.carried.tool).velocity);
-            });
+        const auto point = [&](double s) {
+            const auto p = section.at(section.begin + s).at;
+            return std::array<double, 3>{p[0], p[1], p[2]};
+        };
+        return look(point, [](double) { return 1.0; });
     }
-    return inside < length ? ErrorId::outside_workspace : ErrorId::none;
+    const auto along = [&](double s) { return way_point(section, at, section.begin + s, space.arm, space.members, {}, 1); };
+    if (!space.arm->forward(joints_of(along(0).q), at.carried.tool).miss.ok()) return std::nullopt;
+    return look([&](double s) { return space.arm->forward(joints_of(along(s).q), at.carried.tool).pose.position; },
+                [&](double s) {
+                    const auto w = along(s);
+                    return swing * speed_of(space.arm->moving(joints_of(w.q), joints_of(w.first), at.carried.tool).velocity);
+                });
 }
 
 }  // namespace taktwerk::axes

@@ -2,13 +2,17 @@
 // Whether a piece of a path stays in the workspace of its group. Pure; service side.
 
 #include <algorithm>
+#include <optional>
 
 #include "axes/group/move_shape.hpp"
 
 namespace taktwerk::axes {
 
-/// outside_workspace, or none. Of poses it shows all of the piece, of members' own lines it looks in steps (inside_until()).
-[[nodiscard]] ErrorId refuse_room(const PathSection& section, const RunSection& at, const MoveSpace& space);
+/// Where it ends to, and why; nothing: it stays inside. Of poses all of the piece is seen, of members' own lines it is looked at in steps (inside_until()).
+[[nodiscard]] std::optional<PathHindrance> leaves_rooms(const PathSection& section, const RunSection& at, const MoveSpace& space);
+
+/// Of a way that cannot go on from here.
+[[nodiscard]] PathHindrance room_at(const Workspace& workspace, const std::array<double, 3>& point) noexcept;
 
 /// inside_until() of a jog, in s. It has no end of its own where a member has none: of an hour a share would be no hair any more, and a way beside a wall
 /// would miss what stands out of it. So it is looked at piece by piece.

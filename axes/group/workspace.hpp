@@ -27,6 +27,14 @@ struct WorkspaceRoom {
     std::array<double, 3> half{};
 };
 
+/// Where a point is, seen from a room: u from its surface, below 0 inside; and the direction in which that grows, of length 1. Rooms are convex: the distance of
+/// any other point is at least what it is along that direction.
+struct RoomPlace {
+    double distance = 0;
+    std::array<double, 3> outwards{};
+};
+[[nodiscard]] RoomPlace place_at(const WorkspaceRoom& room, const std::array<double, 3>& point) noexcept;
+
 /// Inside one of the rooms that are not kept free, where there are such, and outside of all that are.
 struct Workspace {
     std::vector<WorkspaceRoom> rooms{};
@@ -34,6 +42,8 @@ struct Workspace {
     /// u from the point to the nearest forbidden place at least; below 0: it is forbidden, that far from the nearest allowed one at least. Never
     /// changes by more than the point moves. Infinite without rooms. Some 10 ns a room.
     [[nodiscard]] double clearance(const std::array<double, 3>& point) const noexcept;
+    /// Whose wall that is: a room that is kept free, or the one that is left there; its place in `rooms`.
+    [[nodiscard]] std::size_t nearest_wall(const std::array<double, 3>& point) const noexcept;
 };
 
 /// A hair of a wall that a point may be beyond: of a way through the arm and back.

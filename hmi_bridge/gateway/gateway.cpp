@@ -478,7 +478,7 @@ void Gateway::step(Instant now) {
         const auto index = target ? *target : all_axes;
         settle(client->second, *entry, answer->answer, answer->error,
                explain(*answer, entry->request.kind, subject_of(machine_.layout(), kind, index, index),
-                       machine_.layout().block_at(answer->holder)));
+                       machine_.layout().block_at(answer->holder), met_by(*answer, machine_.layout(), index)));
     }
     for (auto& [id, client] : clients_)
         for (auto& entry : client.entries)

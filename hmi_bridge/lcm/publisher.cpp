@@ -7,7 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "axes/axis/error_table.hpp"
+#include "axes/group/group_words.hpp"
 #include "hmi_bridge/command_words.hpp"
 #include "hmi_bridge/lcm/whole_publisher.hpp"
 #include "hmi_bridge/message_count.hpp"
@@ -312,7 +315,8 @@ void Publisher::Impl::send_events(const runtime::Snapshot& s, bool repeated) {
         m.times = static_cast<std::int32_t>(std::min<std::uint32_t>(event.times, INT32_MAX));
         m.event = word(event.what);
         m.axis = event.axis < layout.axes.size() ? layout.axes[event.axis].name : std::string{};
-        m.command = word(event.given.kind);
+        const bool of_group = event.group != runtime::no_group;
+        m.command = of_group ? name(event.given.group_kind) : word(event.given.kind);
         m.program = program(event.given);
         m.block = block(event.given);
         m.by_command = word(event.by.kind);
@@ -320,7 +324,7 @@ void Publisher::Impl::send_events(const runtime::Snapshot& s, bool repeated) {
         m.by_block = block(event.by);
         m.held_by_stop = event.held;
         m.error = error && event.error != axes::ErrorId::none ? error->name : std::string_view{};
-        m.english = words.what;
+        m.english = of_group ? fmt::format("{}: {}", event_subject(event, layout), words.what) : words.what;
         m.remedy = words.remedy;
         send(channels.command_event(), m);
         last_event = std::max(last_event, event.number);

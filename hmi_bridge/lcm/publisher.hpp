@@ -23,7 +23,7 @@ public:
     Publisher(MessageBus& bus, const MachineLink& machine, double rate_hz, bool commands_taken, std::function<std::int64_t()> wall_utime);
     ~Publisher();
 
-    /// Whole states too, from now on (whole_state_v4_t). `run`: not 0, another one of each process.
+    /// Whole states too, from now on (whole_state_v5_t). `run`: not 0, another one of each process.
     void publish_whole_states(std::int64_t run, NameOfClient who);
 
     /// Each service step: looks at the snapshot (nullptr before the first cycle) and publishes what is due.

@@ -10,7 +10,7 @@
 namespace taktwerk::hmi {
 namespace {
 
-using taktwerk_lcm::whole_state_v4_t;
+using taktwerk_lcm::whole_state_v5_t;
 
 // The fields before the first text stand at fixed places: fingerprint, utime, seq, protocol_version, run, publication, check.
 constexpr std::size_t protocol_at = 24, run_at = 28, publication_at = 36, check_at = 44, head_size = 52, check_size = 8;
@@ -37,7 +37,7 @@ std::uint64_t check_of(std::span<const std::byte> message) noexcept {
 
 }  // namespace
 
-std::span<const std::byte> write_whole_state(const whole_state_v4_t& state, std::vector<std::byte>& buffer) {
+std::span<const std::byte> write_whole_state(const whole_state_v5_t& state, std::vector<std::byte>& buffer) {
     const auto size = static_cast<std::size_t>(state.getEncodedSize());
     if (buffer.size() < size) buffer.resize(size);
     if (size < head_size || state.encode(buffer.data(), 0, static_cast<int>(size)) != static_cast<int>(size)) return {};
@@ -49,24 +49,24 @@ std::span<const std::byte> write_whole_state(const whole_state_v4_t& state, std:
 
 std::optional<WholeHead> head_of_whole_state(std::span<const std::byte> message) noexcept {
     if (message.size() < head_size || message.size() > longest_message) return std::nullopt;
-    if (fingerprint_of(message) != static_cast<std::uint64_t>(whole_state_v4_t::getHash())) return std::nullopt;
+    if (fingerprint_of(message) != static_cast<std::uint64_t>(whole_state_v5_t::getHash())) return std::nullopt;
     if (big_endian(message, protocol_at, 4) != static_cast<std::uint64_t>(protocol_version)) return std::nullopt;
     if (big_endian(message, check_at, check_size) != check_of(message)) return std::nullopt;
     return WholeHead{static_cast<std::int64_t>(big_endian(message, run_at, 8)),
                      static_cast<std::int64_t>(big_endian(message, publication_at, 8))};
 }
 
-Result<whole_state_v4_t> read_whole_state(std::span<const std::byte> message) {
+Result<whole_state_v5_t> read_whole_state(std::span<const std::byte> message) {
     static const auto catalog = our_types();
     const auto bad = [](const char* what) {
-        return Error{"lcm.bad_message", "whole_state_v4_t", what, "Whoever publishes it has another version of the type, or means harm."};
+        return Error{"lcm.bad_message", "whole_state_v5_t", what, "Whoever publishes it has another version of the type, or means harm."};
     };
-    const auto* type = catalog.find("taktwerk_lcm.whole_state_v4_t");
+    const auto* type = catalog.find("taktwerk_lcm.whole_state_v5_t");
     if (type == nullptr) return bad("this program does not know the type");
     // Generated decoders trust counts and lengths: these are held against the bytes first.
     if (auto checked = check_message(catalog, *type, message); !checked) return checked.error();
     if (!head_of_whole_state(message)) return bad("its check is not that of its bytes, or it is of another protocol");
-    whole_state_v4_t state{};
+    whole_state_v5_t state{};
     if (state.decode(message.data(), 0, static_cast<int>(message.size())) != static_cast<int>(message.size()))
         return bad("it cannot be decoded");
     return state;

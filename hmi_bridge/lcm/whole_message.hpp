@@ -1,5 +1,5 @@
 #pragma once
-// whole_state_v4_t as bytes, and back: of a stranger's bytes only what is whole gets through. Not real-time.
+// whole_state_v5_t as bytes, and back: of a stranger's bytes only what is whole gets through. Not real-time.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "taktwerk_lcm/whole_state_v4_t.hpp"
+#include "taktwerk_lcm/whole_state_v5_t.hpp"
 
 namespace taktwerk::hmi {
 
 /// The encoded message with its `check`; empty where it cannot be encoded. Valid until `buffer` changes.
-[[nodiscard]] std::span<const std::byte> write_whole_state(const taktwerk_lcm::whole_state_v4_t& state, std::vector<std::byte>& buffer);
+[[nodiscard]] std::span<const std::byte> write_whole_state(const taktwerk_lcm::whole_state_v5_t& state, std::vector<std::byte>& buffer);
 
 /// What tells one message from another, read without looking at the rest.
 struct WholeHead {
@@ -23,6 +23,6 @@ struct WholeHead {
 [[nodiscard]] std::optional<WholeHead> head_of_whole_state(std::span<const std::byte> message) noexcept;
 
 /// Errors: lcm.not_this_type, lcm.bad_message (also: its check).
-[[nodiscard]] Result<taktwerk_lcm::whole_state_v4_t> read_whole_state(std::span<const std::byte> message);
+[[nodiscard]] Result<taktwerk_lcm::whole_state_v5_t> read_whole_state(std::span<const std::byte> message);
 
 }  // namespace taktwerk::hmi

@@ -31,7 +31,7 @@ private:
     Duration period_;
     Instant next_{};
     NameOfClient who_;
-    whole_state_v4_t message_{};  ///< its strings and arrays have their memory from one time to the next
+    whole_state_v5_t message_{};  ///< its strings and arrays have their memory from one time to the next
     std::vector<std::byte> buffer_;
 };
 

@@ -32,7 +32,7 @@ void WholeStates::receive(std::span<const std::byte> message, Instant at) {
     came_ = at;
 }
 
-std::optional<taktwerk_lcm::whole_state_v4_t> WholeStates::take() {
+std::optional<taktwerk_lcm::whole_state_v5_t> WholeStates::take() {
     if (!std::exchange(waits_, false)) return std::nullopt;
     auto state = read_whole_state(bytes_);
     if (state) return std::move(*state);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/time.hpp"
-#include "taktwerk_lcm/whole_state_v4_t.hpp"
+#include "taktwerk_lcm/whole_state_v5_t.hpp"
 
 namespace taktwerk::hmi {
 
@@ -24,7 +24,7 @@ public:
     /// Any bytes. Those of an older or the same publication are passed over.
     void receive(std::span<const std::byte> message, Instant at);
     /// The newest, once; nothing: none has come since the last call.
-    [[nodiscard]] std::optional<taktwerk_lcm::whole_state_v4_t> take();
+    [[nodiscard]] std::optional<taktwerk_lcm::whole_state_v5_t> take();
 
     /// Nobody listens for a while: what is missed meanwhile is not lost.
     void look_away() noexcept { looked_away_ = true; }

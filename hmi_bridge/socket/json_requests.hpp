@@ -70,7 +70,7 @@ public:
         std::vector<Part> libraries;
     };
     void set_about(About about) { about_ = std::move(about); }
-    /// For "hello": where whole states come over LCM (lcm/whole_state_v4_t.lcm), or why they do not.
+    /// For "hello": where whole states come over LCM (lcm/whole_state_v5_t.lcm), or why they do not.
     struct LcmTold {
         std::string url, why;
         double rate_hz = 0;

@@ -131,7 +131,33 @@ void put(JsonWriter& json, const whole_group_frame_v1_t& frame) {
     json.close('}');
 }
 
-void put(JsonWriter& json, const whole_group_v2_t& group) {
+/// Only while there is one.
+void put_refusal(JsonWriter& json, const taktwerk_lcm::whole_refusal_v1_t& refusal) {
+    if (refusal.error.empty()) return;
+    json.open("refusal", '{');
+    json.field("number", refusal.number);
+    json.field("error", refusal.error);
+    json.field("text", refusal.text);
+    json.field("remedy", refusal.remedy);
+    json.field("command", refusal.command);
+    json.field("block", refusal.block);
+    json.field("where", refusal.where);
+    json.field("room", refusal.room);
+    json.field("room_kept_free", refusal.room_kept_free != 0);
+    json.field("axis", refusal.axis);
+    json.field("limit_known", refusal.limit_known != 0);
+    json.field("position", refusal.position);
+    json.field("limit", refusal.limit);
+    json.field("on_path", refusal.on_path != 0);
+    json.field("part", refusal.part);
+    json.field("length", refusal.length);
+    json.field("in_space", refusal.in_space != 0);
+    put_numbers(json, "point", refusal.point);
+    json.field("line", refusal.line);
+    json.close('}');
+}
+
+void put(JsonWriter& json, const whole_group_v3_t& group) {
     json.open('{');
     json.field("name", group.name);
     json.field("unit", group.unit);
@@ -154,8 +180,10 @@ void put(JsonWriter& json, const whole_group_v2_t& group) {
     put_numbers(json, "tool_set", group.tool_set);
     put_numbers(json, "tool_actual", group.tool_actual);
     put_list(json, "frames", group.frames);
+    put_refusal(json, group.refusal);
     json.field("tool_speed", group.tool_speed);
     json.field("tool_actual_speed", group.tool_actual_speed);
+    json.field("path_unit", group.path_unit);
     json.field("path_velocity", group.path_velocity);
     json.field("path_acceleration", group.path_acceleration);
     json.field("path_deviation", group.path_deviation);
@@ -207,12 +235,13 @@ void put_giver(JsonWriter& json, std::string_view key, const whole_giver_v1_t& g
     json.close('}');
 }
 
-void put(JsonWriter& json, const whole_event_v1_t& event) {
+void put(JsonWriter& json, const whole_event_v2_t& event) {
     json.open('{');
     json.field("number", event.number);
     json.field("time_ns", event.time_ns);
     json.field("event", event.event);
     json.field("axis", event.axis);
+    if (!event.group.empty()) json.field("group", event.group);
     put_giver(json, "given", event.given);
     put_giver(json, "by", event.by);
     json.field("held_by_stop", event.held_by_stop != 0);
@@ -378,7 +407,7 @@ std::string alarms_text(const runtime::Snapshot& snapshot, const MachineLink& ma
 
 }  // namespace
 
-std::string state_json(const whole_state_v4_t& s) {
+std::string state_json(const whole_state_v5_t& s) {
     constexpr std::size_t of_an_axis = 2048, of_a_group = 4096, of_a_value = 96, of_the_rest = 8192;
     JsonWriter json(of_the_rest + s.axes.size() * of_an_axis + s.groups.size() * of_a_group +
                     (s.inputs.size() + s.outputs.size() + s.variables.size() + s.parameters.size() + s.slaves.size()) * of_a_value);
@@ -416,7 +445,7 @@ std::string state_json(const whole_state_v4_t& s) {
 }
 
 std::string state_json(const runtime::Snapshot& snapshot, const MachineLink& machine, const NameOfClient& who) {
-    whole_state_v4_t all{};
+    whole_state_v5_t all{};
     fill(all, snapshot, machine, who);
     return state_json(all);
 }

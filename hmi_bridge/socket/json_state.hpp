@@ -11,7 +11,7 @@
 namespace taktwerk::hmi {
 
 /// What `state` answers, of what the machine has filled or LCM has brought: {"cycle":...,"axes":[{"name":"x",...}],"alarms":[...],...}.
-[[nodiscard]] std::string state_json(const whole_state_v4_t& state);
+[[nodiscard]] std::string state_json(const whole_state_v5_t& state);
 /// The same of one snapshot. `who`: a client's name, for what people hold.
 [[nodiscard]] std::string state_json(
     const runtime::Snapshot& snapshot, const MachineLink& machine,

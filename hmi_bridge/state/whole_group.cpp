@@ -10,17 +10,19 @@
 #include "axes/group/written_pose.hpp"
 #include "hmi_bridge/state/lcm_text.hpp"
 #include "hmi_bridge/state/whole_state.hpp"
+#include "hmi_bridge/words/place_text.hpp"
 #include "runtime/alarms.hpp"
 
 namespace taktwerk::hmi {
 namespace {
 
 using runtime::SeenGroup;
+using taktwerk_lcm::whole_refusal_v1_t;
 
 constexpr double degree = std::numbers::pi / 180;
 
 /// Of a member it is an alarm, of the path the number of an error.
-void fill_error(whole_group_v2_t& out, std::uint16_t error) {
+void fill_error(whole_group_v3_t& out, std::uint16_t error) {
     out.error = error;
     const auto put = [&](std::string_view name, std::string_view text, std::string_view cause, std::string_view remedy) {
         put_text(out.error_name, name);
@@ -47,7 +49,7 @@ void put_from(const axes::Pose& frame, std::array<double, 6> place, double (&out
     for (std::size_t i = 0; i < 6; ++i) out[i] = i < 3 ? seen[i] : seen[i] / degree;
 }
 
-void fill_members(whole_group_v2_t& out, const SeenGroup& group, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+void fill_members(whole_group_v3_t& out, const SeenGroup& group, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
     out.members.clear();
     for (std::size_t place = 0; place < group.members.size(); ++place) {
         const auto axis = group.members[place].index;
@@ -67,7 +69,7 @@ void fill_members(whole_group_v2_t& out, const SeenGroup& group, const runtime::
 }
 
 /// Those that somebody has set: the others are the machine's, or the world.
-void fill_frames(whole_group_v2_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+void fill_frames(whole_group_v3_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
     axes::GroupFrames frames;
     frames.machine = group.frames.machine;
     frames.product = group.frames.product;
@@ -101,7 +103,7 @@ std::string_view what_moves(const SeenGroup& group) {
     return {};
 }
 
-void fill_way(whole_group_v2_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+void fill_way(whole_group_v3_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
     out.tool_known = group.tool.known;
     for (std::size_t i = 0; i < 6; ++i) {
         out.tool_set[i] = group.tool.set[i];
@@ -134,9 +136,49 @@ void fill_way(whole_group_v2_t& out, const SeenGroup& group, const runtime::Mach
     out.operators_override = group.operators_override;
 }
 
+/// Of a path of axes: theirs, where it is one.
+void fill_path_unit(whole_group_v3_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+    std::string_view unit;
+    for (std::size_t place = 0; place < group.members.size(); ++place) {
+        const auto axis = group.members[place];
+        if ((group.along.members >> place & 1u) == 0 || !axis.valid() || axis.index >= layout.axes.size()) continue;
+        const std::string_view own = layout.axes[axis.index].unit;
+        unit = unit.empty() || unit == own ? own : "u";
+    }
+    put_text(out.path_unit, unit.empty() ? std::string_view(out.unit) : unit);
+}
+
+void fill_refusal(whole_refusal_v1_t& out, const SeenGroup& group, const runtime::MachineLayout& layout, std::size_t index) {
+    const auto& refusal = group.refusal;
+    const auto& why = refusal.why;
+    const auto& at = why.at;
+    const bool any = why.error != axes::ErrorId::none;
+    const auto* text = any ? axes::find_error(why.error) : nullptr;
+    const auto axis = at.place < group.members.size() ? group.members[at.place] : axes::AxisRef{};
+    out.number = refusal.number;
+    put_text(out.error, text ? text->name : std::string_view{});
+    put_text(out.text, text ? text->english.text : std::string_view{});
+    put_text(out.remedy, text ? text->english.remedy : std::string_view{});
+    put_text(out.command, any ? name(refusal.kind) : std::string_view{});
+    put_text(out.block, any ? layout.block_at(refusal.block) : std::string_view{});
+    put_text(out.where, any ? std::string_view(place_text(why, layout, index, group.members)) : std::string_view{});
+    put_text(out.room, room_name(at.room, layout, index));
+    out.room_kept_free = !out.room.empty() && layout.groups[index].rooms[at.room].kept_free;
+    put_text(out.axis, axis_name(axis, layout));
+    out.limit_known = at.limit_known;
+    out.position = at.position;
+    out.limit = at.limit;
+    out.on_path = at.on_path;
+    out.part = at.part;
+    out.length = at.length;
+    out.in_space = at.in_space;
+    for (std::size_t i = 0; i < at.point.size(); ++i) out.point[i] = at.point[i];
+    out.line = why.line;
+}
+
 }  // namespace
 
-void fill(whole_group_v2_t& out, const runtime::Snapshot& snapshot, const runtime::MachineLayout& layout, std::size_t index) {
+void fill(whole_group_v3_t& out, const runtime::Snapshot& snapshot, const runtime::MachineLayout& layout, std::size_t index) {
     const auto& group = snapshot.groups[index];
     put_text(out.name, layout.groups[index].name);
     put_text(out.unit, layout.groups[index].unit);
@@ -151,6 +193,8 @@ void fill(whole_group_v2_t& out, const runtime::Snapshot& snapshot, const runtim
     fill_members(out, group, snapshot, layout);
     fill_frames(out, group, layout);
     fill_way(out, group, layout);
+    fill_path_unit(out, group, layout);
+    fill_refusal(out.refusal, group, layout, index);
 }
 
 }  // namespace taktwerk::hmi

@@ -47,7 +47,7 @@ bool emergency_stop_is_unread(const runtime::Snapshot& s) {
     return false;
 }
 
-void fill_slaves(whole_state_v4_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+void fill_slaves(whole_state_v5_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
     const auto n = make_room(out.slaves, out.slave_count, s.slaves.size(), layout.slaves.size());
     for (std::size_t i = 0; i < n; ++i) {
         auto& slave = out.slaves[i];
@@ -59,7 +59,7 @@ void fill_slaves(whole_state_v4_t& out, const runtime::Snapshot& s, const runtim
     }
 }
 
-void fill_programs(whole_state_v4_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+void fill_programs(whole_state_v5_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
     const auto programs = make_room(out.programs, out.program_count, s.programs.size(), layout.programs.size());
     for (std::size_t i = 0; i < programs; ++i) {
         put_text(out.programs[i].name, layout.programs[i]);
@@ -76,7 +76,7 @@ void fill_programs(whole_state_v4_t& out, const runtime::Snapshot& s, const runt
     }
 }
 
-void fill_points(whole_state_v4_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+void fill_points(whole_state_v5_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
     const auto inputs = make_room(out.inputs, out.input_count, s.inputs.size(), layout.inputs.size());
     for (std::size_t i = 0; i < inputs; ++i) {
         auto& point = out.inputs[i];
@@ -97,7 +97,7 @@ void fill_points(whole_state_v4_t& out, const runtime::Snapshot& s, const runtim
     }
 }
 
-void fill_forces(whole_state_v4_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout, const NameOfClient& who) {
+void fill_forces(whole_state_v5_t& out, const runtime::Snapshot& s, const runtime::MachineLayout& layout, const NameOfClient& who) {
     const auto n = make_room(out.forced, out.force_count, s.force_count, s.forces.size());
     for (std::size_t i = 0; i < n; ++i) {
         const auto& force = s.forces[i];
@@ -163,7 +163,7 @@ void fill(whole_bus_v1_t& out, const runtime::Snapshot& s) {
     out.sync0_margin_least_ns = s.bus.sync0_margin_least_ns;
 }
 
-void fill(whole_state_v4_t& out, const runtime::Snapshot& s, const MachineLink& machine, const NameOfClient& who) {
+void fill(whole_state_v5_t& out, const runtime::Snapshot& s, const MachineLink& machine, const NameOfClient& who) {
     const auto& layout = machine.layout();
     out.cycle_time_ns = count(s.at);
     out.cycle_count = count(s.cycle);

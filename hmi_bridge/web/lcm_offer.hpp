@@ -22,7 +22,7 @@ struct LcmOffer {
     static constexpr double least_rate_hz = 20;  ///< of a page that looks alive
 
     LcmUrl url;
-    std::int64_t run = 0;  ///< whole_state_v4_t.run
+    std::int64_t run = 0;  ///< whole_state_v5_t.run
     std::string why_not;   ///< empty: it can
 };
 

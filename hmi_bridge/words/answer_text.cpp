@@ -4,6 +4,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
+#include "hmi_bridge/words/place_text.hpp"
 #include "hmi_bridge/words/words.hpp"
 
 namespace taktwerk::hmi {
@@ -48,31 +49,47 @@ constexpr OperatorWords operator_words[] = {
     {axes::ErrorId::queue_full, "too many commands wait for it", "Wait until {} stands, then give it again."},
 };
 
-/// The same of a group of axes.
-constexpr OperatorWords group_words[] = {
-    {axes::ErrorId::group_disabled, "it takes no commands before it is enabled", "Enable it: `taktwerk group enable {}`."},
-    {axes::ErrorId::in_error_stop, "an error of an axis or of the path stopped it",
-     "See why (`taktwerk monitor`), remove the cause, then `taktwerk group reset {}`."},
-    {axes::ErrorId::nothing_interrupted,
+/// The same of a group of axes, with a text of its own where the table speaks of one axis.
+struct GroupWords {
+    axes::ErrorId error;
+    std::string_view text, cause, remedy;  ///< {} stands for the group
+};
+constexpr GroupWords group_words[] = {
+    {axes::ErrorId::group_disabled, "", "it takes no commands before it is enabled", "Enable it: `taktwerk group enable {}`."},
+    {axes::ErrorId::in_error_stop, "The group is in GroupErrorStop, or an axis of it in ErrorStop",
+     "an error of an axis or of the path stopped it", "See why (`taktwerk monitor`), remove the cause, then `taktwerk group reset {}`."},
+    {axes::ErrorId::nothing_interrupted, "",
      "nobody has interrupted it from a panel; what a program has interrupted, it goes on with by itself",
      "Look with `taktwerk monitor` what {} does."},
-    {axes::ErrorId::not_at_interruption, "its axes were moved since", "Move the axes of {} back to where it stood, or stop its program."},
-    {axes::ErrorId::not_powered, "an axis of it has no power", "Enable its axes; `taktwerk monitor` shows with {} which they are."},
-    {axes::ErrorId::no_members, "it has no axes", "Its program, or `members` of {} in the file, gives it some."},
-    {axes::ErrorId::state_forbids, "it is stopping, or interrupted already",
+    {axes::ErrorId::not_at_interruption, "", "its axes were moved since",
+     "Move the axes of {} back to where it stood, or stop its program."},
+    {axes::ErrorId::not_powered, "An axis of the group is disabled", "an axis of it has no power",
+     "Enable its axes; `taktwerk monitor` shows with {} which they are."},
+    {axes::ErrorId::no_members, "", "it has no axes", "Its program, or `members` of {} in the file, gives it some."},
+    {axes::ErrorId::state_forbids, "The command is not allowed in the present state of the group", "it is stopping, or interrupted already",
      "Wait until it stands; `taktwerk monitor` shows what {} does."},
-    {axes::ErrorId::beyond_software_limit, "it went as far as its axes may, or an axis of it stands outside its software limits",
+    {axes::ErrorId::invalid_position, "The distance cannot be used",
+     "it is less than any way from where the group stands: nothing would move", "Give {} a longer one."},
+    {axes::ErrorId::beyond_software_limit, "", "it went as far as its axes may, or an axis of it stands outside its software limits",
      "Jog {} the other way; an axis outside its limits alone: `taktwerk jog AXIS`."},
-    {axes::ErrorId::out_of_reach, "it went as far as its arm reaches in this direction",
+    {axes::ErrorId::out_of_reach, "", "it went as far as its arm reaches in this direction",
      "Jog {} another way, or its axes (`--frame acs`)."},
-    {axes::ErrorId::singular_path,
+    {axes::ErrorId::outside_workspace, "The tool came to a wall of its workspace",
+     "it went as far as its `workspace` allows in this direction",
+     "Jog {} another way; out of a room that it may not be in it is let at any time."},
+    {axes::ErrorId::singular_path, "",
      "its arm comes too near to a singularity in this direction: its axes would have to turn much faster than its tool moves",
      "Jog the axes of {} (`--frame acs`), which always leads out."},
-    {axes::ErrorId::no_kinematics, "it has no arm whose tool could be moved", "Jog the axes of {}: `--frame acs`."},
-    {axes::ErrorId::interlocked, "an emergency stop holds, or an axis of it may not move in this direction",
+    {axes::ErrorId::no_kinematics, "", "it has no arm whose tool could be moved", "Jog the axes of {}: `--frame acs`."},
+    {axes::ErrorId::interlocked, "", "an emergency stop holds, or an axis of it may not move in this direction",
      "Release the emergency stop, reset {}; `taktwerk monitor` shows the limit switches of its axes."},
-    {axes::ErrorId::not_at_standstill, "an axis of it moves by itself", "Stop it first: `taktwerk group halt {}`."},
-    {axes::ErrorId::aborted_by_command, "somebody or something else has stopped it", "Let go and press again."},
+    {axes::ErrorId::drive_not_ready, "A drive of the group is not reachable or not ready", "the drive of an axis of it is offline",
+     "Check cable and supply; `taktwerk monitor` shows which axis of {} is offline, and an alarm why."},
+    {axes::ErrorId::not_connected, "The drive of an axis of the group is not connected",
+     "the group that its drive is in (`hot_connect`) is away, or still coming up",
+     "Connect it: `taktwerk monitor` shows which axis of {} it is, and its input GROUP.present."},
+    {axes::ErrorId::not_at_standstill, "", "an axis of it moves by itself", "Stop it first: `taktwerk group halt {}`."},
+    {axes::ErrorId::aborted_by_command, "", "somebody or something else has stopped it", "Let go and press again."},
 };
 
 bool is_of_a_group(CommandKind kind) noexcept {
@@ -80,15 +97,39 @@ bool is_of_a_group(CommandKind kind) noexcept {
     return word != nullptr && word->target == TargetKind::group;
 }
 
-const OperatorWords* words_for_operator(axes::ErrorId error, CommandKind kind) {
-    if (is_of_a_group(kind)) {
-        for (const auto& words : group_words)
-            if (words.error == error) return &words;
-        return nullptr;
-    }
+const OperatorWords* words_for_operator(axes::ErrorId error) {
     for (const auto& words : operator_words)
         if (words.error == error) return &words;
     return nullptr;
+}
+
+const GroupWords* words_of_group(axes::ErrorId error) {
+    for (const auto& words : group_words)
+        if (words.error == error) return &words;
+    return nullptr;
+}
+
+/// What a jog met, where it has a name.
+std::string met_cause(const runtime::CommandAnswer& answer, std::string_view met) {
+    if (answer.jog_end == axes::JogEnd::orientation)
+        return "its arm cannot turn its tool about this direction: a SCARA, a palletizer or a delta turns it about one axis alone";
+    if (met.empty()) return {};
+    if (answer.jog_end == axes::JogEnd::workspace) return fmt::format("the room '{}' ends there, or is kept free", met);
+    return answer.jog_end == axes::JogEnd::member_limit ? fmt::format("axis {} is at its limit in this direction", met)
+                                                        : fmt::format("axis {} stands outside its limits", met);
+}
+
+void explain_of_group(Error& error, const runtime::CommandAnswer& answer, const GroupWords& words, std::string_view group,
+                      std::string_view met) {
+    const auto* text = axes::find_error(answer.error);
+    const auto named = met_cause(answer, met);
+    error.what = fmt::format("{} ({}): {}", words.text.empty() ? text->english.text : words.text, text->name,
+                             named.empty() ? words.cause : std::string_view(named));
+    error.remedy = fmt::format(fmt::runtime(words.remedy), group);
+    if (answer.jog_end == axes::JogEnd::orientation)
+        error.remedy = fmt::format("Jog {} about another direction, or its axes (`--frame acs`).", group);
+    else if (answer.error == axes::ErrorId::beyond_software_limit && answer.jog_end == axes::JogEnd::none && !met.empty())
+        error.remedy = fmt::format("Bring it back alone: `taktwerk jog {}`.", met);
 }
 
 }  // namespace
@@ -135,7 +176,12 @@ std::string limit_note(const runtime::CommandAnswer& answer, std::string_view un
     return fmt::format("limited to {:g} {}/s by {}", answer.limited_to, unit, by);
 }
 
-Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder) {
+std::string_view met_by(const runtime::CommandAnswer& answer, const runtime::MachineLayout& layout, std::uint16_t index) {
+    if (answer.limiting.valid() && answer.limiting.index < layout.axes.size()) return layout.axes[answer.limiting.index].name;
+    return room_name(answer.room, layout, index);
+}
+
+Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder, std::string_view met) {
     Error error{std::string(code(answer.answer)), std::move(subject), "", ""};
     const bool of_a_point = kind == CommandKind::set_output || kind == CommandKind::force;
     switch (answer.answer) {
@@ -198,7 +244,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                 error.what = "the emergency stop is pressed, or its circuit is open";
                 error.remedy = kind == CommandKind::reset ? "Release it when nobody is in danger, then reset."
                                                           : "Release it when nobody is in danger, reset, then give the command again.";
-            } else if (const auto* words = words_for_operator(answer.error, kind)) {
+            } else if (const auto* of_group = is_of_a_group(kind) ? words_of_group(answer.error) : nullptr) {
+                const auto blank = error.subject.find(' ');
+                explain_of_group(error, answer, *of_group, blank == std::string::npos ? "the group" : error.subject.substr(blank + 1), met);
+            } else if (const auto* words = is_of_a_group(kind) ? nullptr : words_for_operator(answer.error)) {
                 const auto blank = error.subject.find(' ');
                 const auto axis = blank == std::string::npos ? std::string("the axis") : error.subject.substr(blank + 1);
                 const auto* text = axes::find_error(answer.error);

@@ -17,7 +17,12 @@ namespace taktwerk::hmi {
 /// "limited to 20 mm/s by setup mode": for an accepted answer whose `limited_to` is above 0.
 [[nodiscard]] std::string limit_note(const runtime::CommandAnswer& answer, std::string_view unit);
 
-/// Only for refusals. `holder`: the block that moves or locks the axis, empty = none or without a name.
-[[nodiscard]] Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder);
+/// Only for refusals. `holder`: the block that moves or locks the axis, empty = none or without a name. `met`: what a group's jog has met, by its name
+/// (met_by()).
+[[nodiscard]] Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder,
+                            std::string_view met = {});
+
+/// The axis whose limit it is, or the room of the group `index`; empty: neither, or it has none of that name.
+[[nodiscard]] std::string_view met_by(const runtime::CommandAnswer& answer, const runtime::MachineLayout& layout, std::uint16_t index);
 
 }  // namespace taktwerk::hmi

@@ -4,6 +4,8 @@
 
 #include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
+#include "axes/group/group_words.hpp"
+#include "hmi_bridge/words/place_text.hpp"
 #include "hmi_bridge/words/words.hpp"
 #include "runtime/alarms.hpp"
 
@@ -16,18 +18,20 @@ using What = CommandEvent::What;
 namespace {
 
 bool nobody(const CommandGiver& giver) {
-    return giver.kind == axes::CommandKind::none && giver.owner == axes::Owner::none && giver.program == runtime::no_program;
+    return giver.kind == axes::CommandKind::none && giver.group_kind == axes::GroupCommandKind::none && giver.owner == axes::Owner::none &&
+           giver.program == runtime::no_program;
 }
 
-std::string_view block_type(axes::CommandKind kind) {
-    const auto name = word(kind);
+std::string_view block_type(const CommandGiver& giver) {
+    if (giver.group_kind != axes::GroupCommandKind::none) return name(giver.group_kind);
+    const auto name = word(giver.kind);
     return name.empty() ? std::string_view{"MC_Power"} : name;
 }
 
 /// By the instance's name where its program gave it one; by program and block type where not.
 std::string named(const CommandGiver& giver, const runtime::MachineLayout& layout) {
     if (nobody(giver)) return {};
-    const auto type = block_type(giver.kind);
+    const auto type = block_type(giver);
     const auto block = giver.block ? layout.block_at(giver.block) : std::string_view{};
     const auto program = giver.program < layout.programs.size() ? layout.programs[giver.program] : std::string{};
     if (!block.empty()) return fmt::format("'{}' ({})", block, type);
@@ -48,7 +52,37 @@ const AlarmInfo* alarm_of(std::uint16_t id) {
 
 std::string_view word(What what) noexcept { return what == What::refused ? "refused" : "aborted"; }
 
+namespace {
+
+EventText describe_of_group(const CommandEvent& event, const runtime::MachineLayout& layout) {
+    EventText out;
+    out.who = named(event.given, layout);
+    if (out.who.empty()) out.who = "A command";
+    const auto* text = axes::find_error(event.error);
+    const auto* alarm = event.axis_error != 0 ? alarm_of(event.axis_error) : nullptr;
+    if (event.what == What::aborted) {
+        const auto reason = alarm ? alarm->name : text ? text->name : std::string_view{"?"};
+        out.what = fmt::format("{} was ended: the group went into GroupErrorStop ({})", out.who, reason);
+        out.remedy = alarm ? sentence(alarm->remedy) : text ? sentence(text->english.remedy) : std::string{};
+        return out;
+    }
+    out.what = text ? fmt::format("{} was refused: {} ({})", out.who, text->english.text, text->name)
+                    : fmt::format("{} was refused with error {:04X}h", out.who, static_cast<unsigned>(event.error));
+    if (const auto where = place_text(event.place, layout, event.group, members_of(layout, event.group)); !where.empty())
+        out.what += fmt::format(". Where: {}", where);
+    out.remedy = text ? sentence(text->english.remedy) : std::string{};
+    return out;
+}
+
+}  // namespace
+
+std::string event_subject(const CommandEvent& event, const runtime::MachineLayout& layout) {
+    if (event.group < layout.groups.size()) return fmt::format("group {}", layout.groups[event.group].name);
+    return event.axis < layout.axes.size() ? fmt::format("axis {}", layout.axes[event.axis].name) : std::string{};
+}
+
 EventText describe(const CommandEvent& event, const runtime::MachineLayout& layout) {
+    if (event.group != runtime::no_group) return describe_of_group(event, layout);
     EventText out;
     out.who = named(event.given, layout);
     if (out.who.empty()) out.who = "A command";

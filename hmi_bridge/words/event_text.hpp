@@ -13,6 +13,8 @@ struct EventText {
     std::string what;    ///< one sentence, with both
     std::string remedy;  ///< one or more, with a full stop
 };
+/// "axis x", "group arm".
+[[nodiscard]] std::string event_subject(const runtime::CommandEvent& event, const runtime::MachineLayout& layout);
 [[nodiscard]] EventText describe(const runtime::CommandEvent& event, const runtime::MachineLayout& layout);
 /// "refused", "aborted".
 [[nodiscard]] std::string_view word(runtime::CommandEvent::What what) noexcept;

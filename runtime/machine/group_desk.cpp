@@ -163,11 +163,13 @@ void GroupDesk::look_at(std::size_t group) noexcept {
     }
     seen.along.velocity = view.path_velocity;
     seen.along.acceleration = view.path_acceleration;
+    seen.along.members = view.path_members;
     seen.along.limiter = view.limiter;
     seen.along.limiting_place = view.limiting_place;
     seen.along.tool_limit = view.tool_limit;
     seen.jog_end = view.jog_end;
-    seen.jog_end_place = view.jog_end_place;
+    seen.jog_hindrance = view.jog_hindrance;
+    seen.refusal = view.refusal;
     seen.along.to_go = view.remaining_distance;
     seen.along.progress = view.progress;
     seen.along.remaining = view.remaining;

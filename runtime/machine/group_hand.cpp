@@ -38,6 +38,15 @@ axes::JogPins pins_of(const OperatorCommand& command) noexcept {
     return pins;
 }
 
+Verdict ended_by(ErrorId error, const axes::GroupView& view) noexcept {
+    auto verdict = verdict_of(error);
+    const auto& at = view.jog_hindrance;
+    verdict.jog_end = view.jog_end;
+    if (at.place < axes::most_members) verdict.limiting = view.members[at.place];
+    verdict.room = at.room;
+    return verdict;
+}
+
 bool turns_and_moves(const GroupJogOrder& order) noexcept {
     constexpr unsigned linear = (1u << first_turn) - 1;
     const unsigned slots = order.plus | order.minus;
@@ -117,19 +126,20 @@ Verdict GroupHand::renew(const OperatorCommand& command, std::size_t group) noex
 Verdict GroupHand::over(std::size_t group) const noexcept {
     const auto& held = held_[group];
     const auto& view = body_.axis_groups[group].view();
-    auto ended_by = ErrorId::none;
-    switch (view.status(held.id, &ended_by)) {
+    auto error = ErrorId::none;
+    switch (view.status(held.id, &error)) {
         case CommandStatus::done:
             switch (view.jog_end) {
                 case JogEnd::distance: return {};  // as far as was asked for: the key may stay down
-                case JogEnd::member_limit: return verdict_of(ErrorId::beyond_software_limit);
-                case JogEnd::reach: return verdict_of(ErrorId::out_of_reach);
-                case JogEnd::workspace: return verdict_of(ErrorId::outside_workspace);
-                case JogEnd::singularity: return verdict_of(ErrorId::singular_path);
+                case JogEnd::member_limit: return ended_by(ErrorId::beyond_software_limit, view);
+                case JogEnd::reach:
+                case JogEnd::orientation: return ended_by(ErrorId::out_of_reach, view);
+                case JogEnd::workspace: return ended_by(ErrorId::outside_workspace, view);
+                case JogEnd::singularity: return ended_by(ErrorId::singular_path, view);
                 case JogEnd::none: return {Answer::stale};
             }
             return {Answer::stale};
-        case CommandStatus::error: return verdict_of(ended_by);
+        case CommandStatus::error: return ended_by(error, view);
         case CommandStatus::aborted: return held.told ? Verdict{Answer::stale} : verdict_of(ErrorId::aborted_by_command);
         default: return {Answer::stale};
     }

@@ -14,6 +14,9 @@ namespace taktwerk::runtime {
 struct Verdict {
     Answer answer = Answer::accepted;
     axes::ErrorId error = axes::ErrorId::none;
+    axes::JogEnd jog_end = axes::JogEnd::none;  ///< of a group's jog, and what it met
+    axes::AxisRef limiting{};
+    std::uint8_t room = axes::PathHindrance::none;
 };
 [[nodiscard]] Verdict verdict_of(axes::ErrorId error) noexcept;
 

@@ -170,6 +170,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     body.axis_groups.plan(now, body.config.cycle);
     axes::plan_axes(body.axes, now, body.config.cycle);
     body.requests.end_of_cycle(now, body.emergency || body.shutting_down, programs.programs());
+    programs.look_at_groups();
     done(Step::plan);
 
     const Instant send_time = body.config.send == SendMode::at_tick ? now + body.config.cycle : now;

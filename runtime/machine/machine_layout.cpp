@@ -1,6 +1,7 @@
 #include "runtime/machine/machine_layout.hpp"
 
 #include "axes/group/group_arm.hpp"
+#include "axes/group/workspace.hpp"
 
 namespace taktwerk::runtime {
 
@@ -46,6 +47,8 @@ MachineLayout::GroupInfo group_info(const MachineBody& body, const axes::AxisGro
         info.commands = axes::commands_of(*group.config().kinematics);
         info.setup_velocity = axes::setup_velocity_of(group.config());
     }
+    if (group.config().workspace)
+        for (const auto& room : group.config().workspace->rooms) info.rooms.push_back({room.name, room.kept_free});
     return info;
 }
 

@@ -95,6 +95,9 @@ void OperatorDesk::answer(const OperatorCommand& command, Verdict verdict) noexc
     reply.sequence = command.sequence;
     reply.answer = verdict.answer;
     reply.error = verdict.error;
+    reply.jog_end = verdict.jog_end;
+    reply.limiting = verdict.limiting;
+    reply.room = verdict.room;
     if (command.axis < body_.axes.size()) {
         reply.owner = body_.axes[command.axis].view().owner;
         reply.holder = body_.axes[command.axis].view().holder;

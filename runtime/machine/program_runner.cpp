@@ -39,10 +39,11 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
       retained_(host_.retained()),
       kept_by_slow_(host_.retained().size()),
       claims_(body.config.axes.size()),
+      groups_(body.axis_groups, body.requests),
       objects_(body.config.programs.size(), body.bus.slave_count()),
       times_(host_.tasks().size()) {
     for (std::size_t p = 0; p < body.config.programs.size(); ++p)
-        programs_.emplace_back(body.requests, body.axis_groups, claims_, static_cast<std::uint16_t>(p));
+        programs_.emplace_back(body.requests, groups_, claims_, static_cast<std::uint16_t>(p));
     build_tasks();
     for (const auto& variable : host_.variables()) variable_values_.push_back(ProgramHost::read(variable));
 }

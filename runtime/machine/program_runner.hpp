@@ -33,6 +33,8 @@ public:
     void run_tasks(std::uint32_t missed_ticks) noexcept;
     /// Alarms that programs raise, and those about them.
     void raise_alarms() noexcept;
+    /// Commands of groups that are over. Behind their plans.
+    void look_at_groups() noexcept { groups_.end_of_cycle(body_.emergency || body_.shutting_down, programs_); }
     /// What the variables are at the end of this cycle.
     void read_variables() noexcept;
     /// The same of what is kept over a time without power. Of a program whose start() or stop() is at work, or which is no slow task's turn, it
@@ -149,6 +151,7 @@ private:
     RetainedImage retained_;
     std::vector<bool> kept_by_slow_;  // as host_.retained()
     std::vector<AxisClaims> claims_;  // per axis
+    WatchedGroups groups_;
     ProgramRecords programs_;
     ObjectRequests objects_;
     std::vector<BaseTask> base_tasks_;

@@ -6,19 +6,19 @@
 #include <span>
 #include <variant>
 
-#include "axes/group/axis_groups.hpp"
 #include "runtime/tasks/program_requests.hpp"
+#include "runtime/tasks/watched_groups.hpp"
 
 namespace taktwerk::runtime {
 
 class ProgramGroups final : public axes::GroupAccess {
 public:
-    ProgramGroups(axes::AxisGroups& groups, std::span<AxisClaims> claims, std::uint16_t program) noexcept
-        : groups_(groups), claims_(claims), program_(program) {}
+    ProgramGroups(WatchedGroups& watched, std::span<AxisClaims> claims, std::uint16_t program) noexcept
+        : watched_(watched), groups_(watched.groups()), claims_(claims), program_(program) {}
 
     [[nodiscard]] const axes::GroupView* view(axes::GroupRef group) const noexcept override { return groups_.view(group); }
     axes::Submitted submit(axes::GroupRef group, const axes::GroupCommand& command, axes::Owner owner) noexcept override {
-        const auto answer = groups_.submit(group, command, owner);
+        const auto answer = watched_.submit(group, command, owner, program_);
         if (answer.error == axes::ErrorId::none && !axes::is_administrative(command.kind))
             for (const auto axis : groups_.view(group)->members)
                 if (axis.valid()) claims_[axis.index].motion = program_;
@@ -56,6 +56,7 @@ public:
     [[nodiscard]] axes::GroupRef group_of(axes::AxisRef axis) const noexcept override { return groups_.group_of(axis); }
 
 private:
+    WatchedGroups& watched_;
     axes::AxisGroups& groups_;
     std::span<AxisClaims> claims_;
     std::uint16_t program_;

@@ -68,7 +68,7 @@ private:
 };
 
 struct ProgramRecord {
-    ProgramRecord(axes::AxisRequests& axes, axes::AxisGroups& of_axes, std::span<AxisClaims> claims, std::uint16_t program)
+    ProgramRecord(axes::AxisRequests& axes, WatchedGroups& of_axes, std::span<AxisClaims> claims, std::uint16_t program)
         : requests(axes, claims, program), groups(of_axes, claims, program) {}
 
     [[nodiscard]] bool running() const noexcept { return state == ProgramState::running; }

@@ -1,5 +1,7 @@
 #include "runtime/tasks/watched_requests.hpp"
 
+#include "runtime/tasks/program_record.hpp"
+
 namespace taktwerk::runtime {
 
 using axes::AxisState;

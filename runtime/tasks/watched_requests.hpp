@@ -4,14 +4,17 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
 #include "axes/axis/direct_requests.hpp"
 #include "runtime/command_events.hpp"
-#include "runtime/tasks/program_record.hpp"
 
 namespace taktwerk::runtime {
+
+struct ProgramRecord;
+using ProgramRecords = std::deque<ProgramRecord>;
 
 class WatchedRequests final : public axes::AxisRequests {
 public:
@@ -37,6 +40,8 @@ public:
     };
     [[nodiscard]] const Rivals& rivals(std::size_t axis) const noexcept { return places_[axis].rivals; }
     [[nodiscard]] const CommandEvents& events() const noexcept { return events_; }
+    /// Of a group of axes (watched_groups.hpp).
+    void note(const CommandEvent& event) noexcept { events_.note(event, now_); }
 
     axes::Submitted submit(axes::AxisRef axis, const axes::AxisCommand& command, axes::Owner owner) noexcept override;
     axes::ErrorId power(axes::AxisRef axis, bool enable, bool positive, bool negative, axes::Owner owner) noexcept override;

@@ -205,6 +205,34 @@ TEST(MonitorScreen, AGroupThatGoesWithABeltSaysSo) {
     EXPECT_THAT(monitor_screen(on_belt, layout, {120, 40, false}), Not(Contains(HasSubstr("with belt"))));
 }
 
+// The place behind the room is not lost on a narrow screen.
+TEST(MonitorScreen, AGroupSaysWhatItHasRefusedAndWhere) {
+    auto refused = state(2, 0);
+    refused["groups"] = Json::array({group()});
+    refused["groups"][0]["path_unit"] = "deg";
+    refused["groups"][0]["refusal"] = {
+        {"number", 3},
+        {"error", "outside_workspace"},
+        {"text", "The path leaves the workspace of the tool"},
+        {"remedy", "Lead the path around the room"},
+        {"command", "MC_MoveLinearAbsolute"},
+        {"block", "cell.up"},
+        {"where", "it enters the kept-free room 'post'; at X 45.000 Y 0.000 Z 12.500 mm (MCS); after 45.0 % of its way"}};
+    for (const std::size_t columns_there : {70u, 160u}) {
+        const auto lines = monitor_screen(refused, layout, {columns_there, 60, false});
+        EXPECT_THAT(lines, Contains(HasSubstr("refused MC_MoveLinearAbsolute cell.up: The path leaves")));
+        EXPECT_THAT(lines, Contains(HasSubstr("where: it enters the kept-free room 'post'")));
+        EXPECT_THAT(lines, Contains(HasSubstr("at X 45.000 Y 0.000 Z 12.500 mm (MCS)")));
+        EXPECT_THAT(lines, Contains(HasSubstr("after 45.0 % of its way")));
+        EXPECT_THAT(lines, Contains(HasSubstr("-> Lead the path around the room")));
+        for (const auto& line : lines) EXPECT_LE(columns(line), columns_there) << line;
+    }
+    EXPECT_THAT(monitor_screen(refused, layout, {110, 40, false}), Contains(HasSubstr("70.5 deg to go"))) << "of axes that turn";
+    refused["events"] =
+        Json::array({{{"axis", ""}, {"group", "arm"}, {"time_ns", 0}, {"times", 1}, {"english", "it was refused"}, {"remedy", "x"}}});
+    EXPECT_THAT(monitor_screen(refused, layout, {110, 60, false}), Contains(HasSubstr("group arm: it was refused")));
+}
+
 TEST(MonitorScreen, AGroupInErrorSaysWhyAlsoWhereThereIsNoRoom) {
     auto broken = state(12, 0);
     broken["groups"] = Json::array({group()});

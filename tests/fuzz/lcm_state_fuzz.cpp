@@ -14,7 +14,7 @@ using namespace taktwerk::hmi;
 
 namespace {
 
-constexpr std::size_t check_at = 44, check_size = 8;  // whole_state_v4_t.lcm: behind 8 + 8 + 8 + 4 + 8 + 8 bytes
+constexpr std::size_t check_at = 44, check_size = 8;  // whole_state_v5_t.lcm: behind 8 + 8 + 8 + 4 + 8 + 8 bytes
 
 void put_big_endian(std::vector<std::byte>& message, std::size_t at, std::uint64_t value) {
     for (std::size_t i = 8; i-- > 0; value >>= 8) message[at + i] = static_cast<std::byte>(value);
@@ -25,7 +25,7 @@ void put_big_endian(std::vector<std::byte>& message, std::size_t at, std::uint64
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
     std::vector<std::byte> message(8);
-    put_big_endian(message, 0, static_cast<std::uint64_t>(taktwerk_lcm::whole_state_v4_t::getHash()));
+    put_big_endian(message, 0, static_cast<std::uint64_t>(taktwerk_lcm::whole_state_v5_t::getHash()));
     const auto* body = reinterpret_cast<const std::byte*>(data) + 1;
     message.insert(message.end(), body, body + size - 1);
     const bool checked = (data[0] & 1) != 0 && message.size() >= check_at + check_size;

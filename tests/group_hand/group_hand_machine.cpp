@@ -100,7 +100,7 @@ TEST(GroupHand, WhatEndsAJogIsSaid) {
     EXPECT_EQ(over.axis_error, axes::ErrorId::beyond_software_limit) << over.error.what << rig.m.alarms() << rig.at("lift");
     EXPECT_EQ(rig.at("lift"), 100);
     EXPECT_EQ(rig.seen().jog_end, axes::JogEnd::member_limit);
-    EXPECT_EQ(rig.seen().jog_end_place, 2) << "the lift is the third member";
+    EXPECT_EQ(rig.seen().jog_hindrance.place, 2) << "the lift is the third member";
     rig.bend();
     ASSERT_TRUE(rig.jog({"mcs", "x+"}).accepted());
     const auto reach = rig.hold({"mcs", "x+"}, 6s);

@@ -91,5 +91,54 @@ TEST_F(EventTextTest, AnErrorThatNoListNamesIsWrittenAsAllOtherNumbersAre) {
     EXPECT_THAT(text().what, HasSubstr("was refused with error 9ABCh"));
 }
 
+// Group "table" has the axes x and y.
+TEST_F(EventTextTest, AGroupsRefusedCommandSaysWhichRoomAndWhere) {
+    machine.its_layout.groups[0].rooms = {{"cell", false}, {"post", true}};
+    event = {};
+    event.group = 0;
+    event.axis = axes::AxisRef{}.index;
+    event.given.owner = Owner::program;
+    event.given.program = 0;
+    event.given.block = &pick[8];
+    event.given.group_kind = axes::GroupCommandKind::linear_absolute;
+    event.error = ErrorId::outside_workspace;
+    event.place.error = event.error;
+    auto& at = event.place.at;
+    at.room = 1;
+    at.in_space = at.on_path = true;
+    at.point = {45, -0.0001, 12.5};
+    at.part = 0.45;
+    at.length = 100;
+    const std::string refused =
+        "'cell.pick' (MC_MoveLinearAbsolute) was refused: The path leaves the workspace of the tool (outside_workspace). Where: ";
+    EXPECT_EQ(event_subject(event, machine.its_layout), "group table");
+    EXPECT_EQ(
+        text().what,
+        refused + "it enters the kept-free room 'post'; at X 45.000 Y 0.000 Z 12.500 mm (MCS); after 45.000 of 100.000 mm of its way");
+    EXPECT_THAT(text().remedy, HasSubstr("around the room"));
+    at.room = 0;
+    at.length = 0;
+    event.place.line = 12;
+    EXPECT_EQ(text().what,
+              refused + "it leaves the room 'cell'; at X 45.000 Y 0.000 Z 12.500 mm (MCS); after 45.0 % of its way; line 12 of its text");
+
+    event.error = event.place.error = ErrorId::beyond_software_limit;
+    event.place = {.error = event.error};
+    at.place = 1;
+    EXPECT_THAT(text().what, HasSubstr(". Where: axis y would be beyond its limit"));
+    at.limit_known = true;
+    at.position = 120;
+    at.limit = 100;
+    EXPECT_THAT(text().what, HasSubstr(". Where: axis y would go to 120.000 mm, its limit is 100.000 mm"));
+    event.error = event.place.error = ErrorId::not_homed;
+    EXPECT_THAT(text().what, HasSubstr(". Where: axis y is not homed"));
+    at = {};
+    EXPECT_THAT(text().what, Not(HasSubstr("Where"))) << "nobody can say";
+
+    event.what = CommandEvent::What::aborted;
+    event.axis_error = axes::id(axes::AxisAlarm::drive_fault);
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was ended: the group went into GroupErrorStop (drive_fault)");
+}
+
 }  // namespace
 }  // namespace taktwerk::hmi::test

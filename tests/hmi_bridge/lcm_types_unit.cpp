@@ -26,6 +26,7 @@
 #include "taktwerk_lcm/whole_state_v2_t.hpp"
 #include "taktwerk_lcm/whole_state_v3_t.hpp"
 #include "taktwerk_lcm/whole_state_v4_t.hpp"
+#include "taktwerk_lcm/whole_state_v5_t.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -66,6 +67,10 @@ TEST(LcmTypes, FingerprintsDoNotChange) {
         {"whole_state_v3_t", {whole_state_v3_t::getHash(), 0xf5a7ee78c2284487u}},
         {"whole_state_v4_t", {whole_state_v4_t::getHash(), 0xf13b94f6195835a9u}},
         {"whole_group_v2_t", {whole_group_v2_t::getHash(), 0x8d54fd10c30b7d07u}},
+        {"whole_state_v5_t", {whole_state_v5_t::getHash(), 0x95359926ef651d49u}},
+        {"whole_group_v3_t", {whole_group_v3_t::getHash(), 0x41462f49dbc6d475u}},
+        {"whole_refusal_v1_t", {whole_refusal_v1_t::getHash(), 0x97747b996ea2fff6u}},
+        {"whole_event_v2_t", {whole_event_v2_t::getHash(), 0x0e53f4c3a8e5ae79u}},
         {"whole_group_frame_v1_t", {whole_group_frame_v1_t::getHash(), 0xcf690152a10afeaeu}},
         {"whole_statistics_v1_t", {whole_statistics_v1_t::getHash(), 0x5b85a89c093cd5e5u}},
         {"whole_statistics_v2_t", {whole_statistics_v2_t::getHash(), 0x366d4af8a7e70253u}},

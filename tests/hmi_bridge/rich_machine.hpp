@@ -105,6 +105,19 @@ inline void draw(FakeMachine& machine, std::uint64_t seed) {
         group.active = some() ? static_cast<std::uint32_t>(random()) : 0;
         group.block = some() ? &block_of_rich_machine : nullptr;
         group.queued = static_cast<std::uint8_t>(below(17));
+        group.along.members = static_cast<std::uint16_t>(below(8));
+        auto& refusal = group.refusal;
+        refusal.number = static_cast<std::uint32_t>(below(9));
+        refusal.kind = static_cast<axes::GroupCommandKind>(below(13));
+        refusal.block = some() ? &block_of_rich_machine : nullptr;
+        refusal.why.error = some() ? axes::ErrorId::outside_workspace : axes::ErrorId::none;
+        refusal.why.line = static_cast<std::uint32_t>(below(3));
+        auto& where = refusal.why.at;
+        for (bool* flag : {&where.on_path, &where.in_space, &where.limit_known}) *flag = some();
+        where.room = static_cast<std::uint8_t>(below(4));
+        where.place = static_cast<std::uint8_t>(below(6));
+        for (auto* value : {&where.part, &where.length, &where.position, &where.limit, &where.point[0], &where.point[1], &where.point[2]})
+            *value = number();
     }
     s.alarms.resize(3);
     s.alarm_count = below(4);
@@ -125,6 +138,7 @@ inline void draw(FakeMachine& machine, std::uint64_t seed) {
         event.axis = static_cast<std::uint16_t>(i * 3);
         event.given = {axes::CommandKind::move_absolute, axes::Owner::program, 0, &block_of_rich_machine};
         event.held = some();
+        event.group = some() ? 0 : runtime::no_group;
         event.times = static_cast<std::uint32_t>(below(100));
     }
     s.events_dropped = below(3);
@@ -142,6 +156,7 @@ inline void make_rich(FakeMachine& machine) {
     auto& layout = machine.its_layout;
     layout.input_units = {"", "bar"};
     layout.output_units = {"%"};
+    layout.groups[0].rooms = {{"cell", false}, {"the \"post\"", true}};
     layout.axes[1].group = "feeder \"left\"";
     layout.blocks = {{"cell.pick", reinterpret_cast<const std::byte*>(&block_of_rich_machine), sizeof block_of_rich_machine}};
     machine.recorded = 5;

@@ -5,7 +5,7 @@ import { why_not_own } from '@page/group/hand';
 import { path_text, window_around } from '@page/group/path_view';
 import { Trail } from '@page/group/trail';
 import { Answer, Request } from '@page/link';
-import { goes_with, held_back, why_error } from '@page/pages/group';
+import { goes_with, held_back, why_error, why_refused } from '@page/pages/group';
 import { GroupState, MachineState } from '@page/state';
 import { choose_language, say } from '@page/texts';
 
@@ -37,6 +37,27 @@ test('an error is said in the reader\'s language, with what to do', () => {
     choose_language('zh');
     try {
         assert.match(why_error(stopped)[0] ?? '', /[\u4e00-\u9fff]/);
+    } finally {
+        choose_language('en');
+    }
+});
+
+test('what it has refused is said with where and what to do, in the reader\'s language', () => {
+    assert.deepEqual(why_refused(group), []);
+    const refused = {
+        ...group, refusal: {
+            number: 1, error: 'outside_workspace', text: 'The path leaves the workspace of the tool', command: 'MC_MoveLinearAbsolute', block: 'cell.in',
+            remedy: 'Lead the path inside, or around the room; the group\'s `workspace` in the machine file says where the tool\'s point may be',
+            where: 'it enters the kept-free room \'post\'; at X 45.000 Y 0.000 Z 12.500 mm (MCS); after 45.000 of 100.000 mm of its way; line 12 of its text',
+        },
+    };
+    assert.match(why_refused(refused)[0] ?? '', /MC_MoveLinearAbsolute \(cell\.in\) was refused: The path leaves/);
+    assert.equal(why_refused(refused)[1], refused.refusal.where);
+    choose_language('zh');
+    try {
+        const [what = '', where = '', remedy = ''] = why_refused(refused);
+        for (const text of [what, where, remedy]) assert.match(text, /[\u4e00-\u9fff]/);
+        assert.equal(where, '进入须保持空闲的空间“post”；位于 X 45.000 Y 0.000 Z 12.500 mm（MCS）；已走 45.000，全程 100.000 mm；其程序第 12 行');
     } finally {
         choose_language('en');
     }

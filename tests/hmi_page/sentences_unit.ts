@@ -54,6 +54,20 @@ for (const [file, least] of [['runtime/machine/alarm_words.cpp', 8], ['hmi_bridg
         for (const sentence of found) whole(/^[ ;,]/.test(sentence) ? `nobody has control${sentence}` : sentence.replace('{}{}', '; else: x').replace(/: $/, ': x').replace(/\{[^}]*\}/g, 'x'));
     });
 
+test('where a path cannot be gone, alone and behind what was refused', () => {
+    const found = literals(read('hmi_bridge/words/place_text.cpp')).filter((one) => /[a-z]{3} |at X/.test(one) && !one.includes('/')).map((one) => one.replace(/\{[^}]*\}/g, '12.5'));
+    assert.ok(found.length >= 10, `${found.length} sentences`);
+    for (const where of found) {
+        whole(where);
+        const all = in_chinese(`'cell.in' (MC_MovePath) was refused: The path leaves the workspace of the tool (outside_workspace). Where: ${where}`) ?? '';
+        assert.match(all, /位置：/);
+        assert.doesNotMatch(all, /Where|room|axis |its way|its text/, all);
+    }
+    const long = in_chinese('MC_MovePath of program cell was refused: The path leaves the workspace of the tool (outside_workspace). Where: it leaves the room \'cell\'; at X 1.000 Y 2.000 Z 3.000 mm (MCS); after 1.000 of 2.000 mm of its way; line 7 of its text') ?? '';
+    assert.doesNotMatch(long, /Where|room|its way|its text|leaves/, long);
+    assert.match(long, /离开空间“cell”；位于 X 1\.000 Y 2\.000 Z 3\.000 mm（MCS）；已走 1\.000，全程 2\.000 mm；其程序第 7 行/);
+});
+
 test('why nothing new comes', () => {
     const found = [...read('hmi_bridge/web/server/feed.hpp').matchAll(/why_ = "([^"]+)"/g)].map((one) => one[1] ?? '');
     assert.ok(found.length >= 3);

@@ -1,5 +1,7 @@
 // A program moves a group of axes over a whole machine: real frames, simulated drives, virtual time.
 
+#include "axes/axis/alarms.hpp"
+#include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "axes/planner/motion.hpp"
 #include "tests/runtime/test_program.hpp"
@@ -272,6 +274,57 @@ TEST(AxisGroupMachine, AGroupThatIsNotThereIsAnError) {
     EXPECT_NE(codes(config).find("program.unknown_axis_group"), std::string::npos) << codes(config);
     config.axis_groups[0].members.push_back("q");
     EXPECT_NE(codes(config).find("group.unknown_axis"), std::string::npos) << codes(config);
+}
+
+// What a program's group refuses is told once, with the block and the place; what it refuses again meanwhile is counted. Its first move leads through the
+// room at x = 30: after half of its way.
+TEST(AxisGroupMachine, ARefusedCommandIsAnEventWithItsPlace) {
+    auto config = with_group(3, entry_of<DrawsInMachine>, xyz());
+    axes::Workspace space;
+    space.rooms.push_back({.name = "post", .shape = axes::WorkspaceRoom::Shape::box, .kept_free = true, .half = {5, 100, 100}});
+    space.rooms[0].middle.position = {35, 0, 0};
+    config.axis_groups[0].workspace = std::make_shared<const axes::Workspace>(space);
+    TestMachine m{std::move(config)};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.state().event_count > 0; }, 5s)) << m.alarms();
+    m.run(1s);
+    const auto& s = m.state();
+    std::vector<CommandEvent> of_group;
+    for (std::size_t i = 0; i < s.event_count; ++i)
+        if (s.events[i].group == 0) of_group.push_back(s.events[i]);
+    ASSERT_FALSE(of_group.empty());
+    const auto& event = of_group.front();
+    EXPECT_EQ(event.what, CommandEvent::What::refused);
+    EXPECT_EQ(event.error, axes::ErrorId::outside_workspace);
+    EXPECT_EQ(event.given.group_kind, axes::GroupCommandKind::linear_absolute);
+    EXPECT_EQ(event.given.program, 0);
+    EXPECT_EQ(m.machine->layout().block_at(event.given.block), "p.first");
+    EXPECT_EQ(event.place.at.room, 0);
+    EXPECT_NEAR(event.place.at.part, 0.5, 1e-6);
+    EXPECT_NEAR(event.place.at.point[0], 30, 1e-6);
+    EXPECT_NEAR(event.place.at.point[1], 40, 1e-6);
+    ASSERT_EQ(m.machine->layout().groups[0].rooms.size(), 1u);
+    EXPECT_EQ(m.machine->layout().groups[0].rooms[0].name, "post");
+    EXPECT_EQ(s.groups[0].refusal.why.error, axes::ErrorId::outside_workspace);
+    std::size_t first_moves = 0;
+    for (const auto& one : of_group) first_moves += one.given.group_kind == axes::GroupCommandKind::linear_absolute ? 1u : 0u;
+    EXPECT_EQ(first_moves, 1u) << "again and again, told once";
+}
+
+// Of a command that ends because a drive failed the alarm is told, and which command that was.
+TEST(AxisGroupMachine, WhatEndsWithTheGroupIsToldAsEnded) {
+    TestMachine m{with_group(2)};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.state().groups[0].active != 0 && m.axis(0).set_velocity > 20; }, 5s));
+    EXPECT_EQ(m.state().event_count, 0u);
+    m.world.drive("x")->raise(0x2310);
+    m.run(500ms);
+    const auto& s = m.state();
+    ASSERT_GE(s.event_count, 1u);
+    const auto found = std::find_if(s.events.begin(), s.events.begin() + static_cast<std::ptrdiff_t>(s.event_count),
+                                    [](const auto& e) { return e.group == 0 && e.what == CommandEvent::What::aborted; });
+    ASSERT_NE(found, s.events.begin() + static_cast<std::ptrdiff_t>(s.event_count));
+    EXPECT_EQ(found->axis_error, axes::id(axes::AxisAlarm::drive_fault));
 }
 
 }  // namespace

@@ -93,7 +93,9 @@ export interface CommandEvent {
     number: number;
     time_ns: number;
     event: string;
+    /** Empty: it is a group's. */
     axis: string;
+    group?: string;
     times: number;
     english: string;
     remedy: string;
@@ -125,6 +127,17 @@ export interface GroupFrame {
     tool_actual: ToolPose;
 }
 
+/** What a group has refused of its program's commands, last: why, and where on the path and in the machine. In English. */
+export interface GroupRefusal {
+    number: number;
+    error: string;
+    text: string;
+    remedy: string;
+    command: string;
+    block: string;
+    where: string;
+}
+
 export interface GroupState {
     name: string;
     unit: string;
@@ -148,8 +161,12 @@ export interface GroupState {
     tool_actual: ToolPose;
     /** Absent from an older runtime, as all of `track` and `path_deviation`. */
     frames?: GroupFrame[];
+    /** Until another motion begins. */
+    refusal?: GroupRefusal;
     tool_speed: Real;
     tool_actual_speed: Real;
+    /** Of a path of axes that turn: "deg". Absent from an older runtime. */
+    path_unit?: string;
     path_velocity: Real;
     path_acceleration: Real;
     path_deviation?: Real;

@@ -46,7 +46,7 @@ public:
         return (opening_ || bus_) && !failed_ && !delivers(at) && at - std::max(began_, came_) <= patience;
     }
     /// The newest, once.
-    [[nodiscard]] std::optional<taktwerk_lcm::whole_state_v4_t> take() { return std::exchange(newest_, std::nullopt); }
+    [[nodiscard]] std::optional<taktwerk_lcm::whole_state_v5_t> take() { return std::exchange(newest_, std::nullopt); }
     [[nodiscard]] Instant came() const { return came_; }
     [[nodiscard]] std::uint64_t lost() const { return states_.lost(); }
     [[nodiscard]] std::uint64_t refused() const { return states_.refused(); }
@@ -119,7 +119,7 @@ private:
     WholeStates states_;
     std::optional<LcmOpening> opening_;
     std::unique_ptr<LcmBus> bus_;
-    std::optional<taktwerk_lcm::whole_state_v4_t> newest_;
+    std::optional<taktwerk_lcm::whole_state_v5_t> newest_;
     bool failed_ = false;  ///< LCM could not be opened when it was tried last
     Instant began_{}, came_{}, wanted_{}, open_again_{}, judged_{};
     std::uint64_t foreign_seen_ = 0, refused_seen_ = 0;

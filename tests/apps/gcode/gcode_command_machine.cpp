@@ -192,6 +192,13 @@ TEST_F(GcodeCommand, RunSaysUnitsAndWhoAsks) {
     EXPECT_THAT(run.text(), HasSubstr(" mm/s\n"));
     EXPECT_THAT(run.text(), HasSubstr("line 2      T1"));
     EXPECT_THAT(run.text(), HasSubstr("line 3      M6, tool 1"));
+    // Its X ends at 305.
+    const auto beyond = file("beyond.ngc", "G53 G0 X10\nG53 G0 X400 Y20\nM2\n");
+    Child refused({taktwerk, "gcode", "run", machine, beyond});
+    EXPECT_EQ(refused.wait(60s), exit_bad_file) << refused.text();
+    EXPECT_THAT(refused.text(), HasSubstr("beyond.ngc:2"));
+    EXPECT_THAT(refused.text(),
+                HasSubstr("axis x comes to its limit of 305.000 mm; at X 305.000 Y 15.128 Z 0.000 mm (MCS); after 295.388 of 390.512 mm"));
     Child rotary({taktwerk, "gcode", "run", machine, file("rotary.ngc", "G0 A5\nM2\n"), "--rotary"});
     EXPECT_EQ(rotary.wait(60s), exit_usage);
     EXPECT_THAT(rotary.text(), HasSubstr("--rotary: on a machine a stored path moves X, Y and Z"));

@@ -223,6 +223,28 @@ TEST(GroupJog, ADistanceIsGoneExactly) {
     }
 }
 
+// A distance that is none at all is an error: else it would count as gone, and nobody would see that nothing moved. A distance that is gone is none.
+TEST(GroupJog, ADistanceThatIsNoneIsAnError) {
+    JogRig rig(3, cartesian_arm());
+    for (const auto frame : {mcACS, mcMCS}) {
+        rig.frame = frame;
+        rig.pins.linear = 1e-12;
+        rig.press({1, 0, 0});
+        ASSERT_EQ(rig.answer.error, ErrorId::none);
+        ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 100));
+        EXPECT_EQ(rig.error_of(rig.answer.id), ErrorId::invalid_position) << frame;
+        EXPECT_EQ(rig.view().state, GroupStandby);
+        rig.press({});
+        rig.pins.linear = 1e-3;
+        rig.press({1, 0, 0});
+        ASSERT_TRUE(rig.until_held([&] { return !rig.active(); }, 100));
+        EXPECT_EQ(rig.status(rig.answer.id), CommandStatus::done) << frame;
+        EXPECT_EQ(rig.view().jog_end, JogEnd::distance);
+        rig.press({});
+    }
+    EXPECT_NEAR(rig.point()[0], 2e-3, 1e-12);
+}
+
 // G-090: a jog takes the place of what runs, which brakes on its own path first; nothing is buffered behind a jog; any aborting command takes over.
 TEST(GroupJog, AJogTakesOverAndIsTakenOver) {
     JogRig rig(2);
@@ -379,6 +401,39 @@ TEST(GroupJog, ASingularityEndsItAndTheAxesLeadOut) {
     rig.press({-1});
     const double x = rig.view().tool_set[0];
     ASSERT_TRUE(rig.until_held([&] { return rig.view().tool_set[0] < x - 20; }, 1500));
+}
+
+// What a jog met is in the view: which member's limit, which room, or a turn that the arm does not have (not its reach).
+TEST(GroupJog, WhatItMetIsSaid) {
+    JogRig limited(homed_axes(2, 10), {});
+    home_all(limited);
+    limited.press({0, 1});
+    ASSERT_TRUE(limited.until_held([&] { return limited.active() == false; }, 1500));
+    limited.press({});
+    limited.press({0, 1});
+    ASSERT_TRUE(limited.until_held([&] { return !limited.active(); }, 100));
+    EXPECT_EQ(limited.view().jog_end, JogEnd::member_limit);
+    EXPECT_EQ(limited.view().jog_hindrance.place, 1);
+
+    WorkspaceRoom far{.name = "far", .shape = WorkspaceRoom::Shape::box, .kept_free = true, .half = {1, 1, 1}}, cell = far;
+    far.middle.position = {500, 0, 0};
+    cell.kept_free = false;
+    cell.half = {3, 100, 100};
+    JogRig walled(GroupRig::named(2), plane_arm(), {far, cell});
+    walled.frame = mcMCS;
+    for (int presses = 0; presses < 2; ++presses) {
+        walled.press({1, 0});
+        ASSERT_TRUE(walled.until_held([&] { return !walled.active(); }, 2000));
+        walled.press({});
+    }
+    EXPECT_EQ(walled.view().jog_end, JogEnd::workspace);
+    EXPECT_EQ(walled.view().jog_hindrance.room, 1);
+
+    ScaraRig scara;
+    scara.frame = mcMCS;
+    scara.press({0, 0, 0, 1});
+    ASSERT_TRUE(scara.until_held([&] { return !scara.active(); }, 100));
+    EXPECT_EQ(scara.view().jog_end, JogEnd::orientation);
 }
 
 // G-089, G-090: a turn of the tool about its own point, by its distance: the point stays.

@@ -353,6 +353,38 @@ TEST(DrivenPath, PinsThatMeanNothingAreRefused) {
     EXPECT_EQ(rig.plc.rig.groups.select(rig.plc.group, {0}, {}).error, ErrorId::path_in_use);
 }
 
+// A master that would follow a member follows itself, over the path. Not while it drives it alone: also while it waits for its turn, and over an axis between.
+TEST(DrivenPath, AMasterThatBeginsToFollowAMemberIsRefused) {
+    auto members = PathRig::axes_of(0);
+    DrivenRig rig(straight, axes::test::belt_axis(), PathRig::group(), members);
+    auto& master = rig.plc.rig.axes[3];
+    const auto onto = [&](std::uint16_t axis) {
+        axes::AxisCommand gear{.kind = axes::CommandKind::gear_in};
+        gear.details = axes::GearDetails{AxisRef{axis}, {1, 1}};
+        ErrorId error{};
+        rig.plc.rig.step([&] { error = master.submit(gear, axes::Owner::program).error; });
+        return error;
+    };
+    ASSERT_EQ(onto(0), ErrorId::none) << "nothing drives the path yet";
+    rig.plc.run(5);
+    EXPECT_EQ(rig.refused(), ErrorId::coupling_loop) << "the other way round";
+    rig.halt_master();
+    rig.plc.run(200);
+    rig.sync.Execute = false;
+    rig.plc.scan();
+    rig.begin();
+    for (std::uint16_t member = 0; member < 3; ++member) EXPECT_EQ(onto(member), ErrorId::coupling_loop) << member;
+    EXPECT_EQ(rig.state(), GroupState::GroupMoving) << "it goes on";
+    rig.master_at(10);
+    rig.plc.run(300);
+    EXPECT_TRUE(rig.sync.InSync);
+    (void)rig.plc.rig.give({.kind = axes::GroupCommandKind::halt});
+    ASSERT_TRUE(rig.plc.until([&] { return rig.state() == GroupState::GroupStandby; }, 3000));
+    rig.halt_master();
+    rig.plc.run(300);
+    EXPECT_EQ(onto(0), ErrorId::none) << "it drives nothing any more";
+}
+
 // An encoder turned by hand: what is measured trembles, and is followed within what its filter leaves.
 TEST(DrivenPath, AnEncoderDrivesItToo) {
     auto wheel = axes::test::belt_axis();

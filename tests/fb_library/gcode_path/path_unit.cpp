@@ -254,6 +254,14 @@ TEST(GcodePath, APlaceBeyondALimitEndsThePathBehindTheBlockBefore) {
     EXPECT_EQ(rig.move.ErrorID, ErrorId::beyond_software_limit);
     EXPECT_EQ(rig.handshake.FaultLine, 4u);
     EXPECT_LT(distance(rig.at(), {10, 20, 0}), 1e-9);
+    const auto& refusal = rig.plc.rig.view().refusal;  // of the piece from Y 20 to Y 70 the part up to 50
+    EXPECT_EQ(refusal.kind, axes::GroupCommandKind::path);
+    EXPECT_EQ(refusal.why.line, 4u);
+    EXPECT_EQ(refusal.why.at.place, 1);
+    EXPECT_EQ(refusal.why.at.limit, 50);
+    EXPECT_NEAR(refusal.why.at.part, 0.6, 1e-6);
+    EXPECT_NEAR(refusal.why.at.length, 50, 1e-9);
+    EXPECT_NEAR(refusal.why.at.point[1], 50, 1e-6);
     rig.plc.run(5);
     EXPECT_EQ(rig.plc.rig.view().state, axes::GroupState::GroupStandby) << "no error of the group: a command ended with one";
 }

@@ -223,6 +223,51 @@ TEST(GroupBlocks, AnErrorIsReadUntilItIsReset) {
     EXPECT_EQ(plc.rig.view().state, axes::GroupState::GroupStandby);
 }
 
+// A room of 10 about x = 50: entered at 45, by an arm that is none but its axes.
+TEST(GroupBlocks, ARefusalIsReadWithItsPlace) {
+    std::vector<axes::AxisConfig> configs{group_axis("x"), group_axis("y"), group_axis("z")};
+    axes::WorkspaceRoom far{.name = "far", .shape = axes::WorkspaceRoom::Shape::box, .kept_free = true, .half = {1, 1, 1}}, post = far;
+    far.middle.position = {500, 0, 0};
+    post.middle.position = {50, 0, 0};
+    post.half = {5, 50, 50};
+    GroupPlc plc(configs, axes::test::GroupRig::all_of(configs, axes::test::cartesian_arm(), {far, post}));
+    MC_GroupEnable enable;
+    plc.carry_out(enable);
+    Group_ReadRefusal read;
+    MC_MoveLinearAbsolute through, there;
+    read.AxesGroup = through.AxesGroup = there.AxesGroup = plc.group;
+    read.Enable = true;
+    through.CoordSystem = there.CoordSystem = mcMCS;
+    through.Position.C.Tcp = {.X = 100};
+    there.Position.C.Tcp = {.X = 10};
+    through.Velocity = there.Velocity = 50;
+    plc.program = [&](const MotionContext& ctx) {
+        through(ctx);
+        there(ctx);
+        read(ctx);
+    };
+    plc.scan();
+    EXPECT_TRUE(read.Valid);
+    EXPECT_EQ(read.RefusedID, ErrorId::none);
+    EXPECT_EQ(read.Number, 0u);
+    through.Execute = true;
+    ASSERT_TRUE(plc.until([&] { return through.Error; }, 100));
+    plc.scan();
+    EXPECT_EQ(through.ErrorID, ErrorId::outside_workspace);
+    EXPECT_EQ(read.RefusedID, ErrorId::outside_workspace);
+    EXPECT_EQ(read.Number, 1u);
+    EXPECT_EQ(read.Room, 2) << "counted from 1";
+    EXPECT_EQ(read.IdentInGroup, 0);
+    EXPECT_TRUE(read.OnPath && read.InSpace);
+    EXPECT_NEAR(read.Progress, 0.45, 1e-6);
+    EXPECT_NEAR(read.X, 45, 1e-6);
+    there.Execute = true;
+    plc.run(3);
+    EXPECT_EQ(read.RefusedID, ErrorId::none) << "another motion has begun";
+    EXPECT_EQ(read.Room, 0);
+    EXPECT_EQ(read.Number, 1u);
+}
+
 // G-008
 // Who leaves the group while the block has Enable is let go by it, and does not stay under power with nobody to take it away.
 TEST(GroupBlocks, PowerLetsGoWhoLeavesTheGroup) {

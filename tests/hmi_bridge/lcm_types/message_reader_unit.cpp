@@ -35,6 +35,7 @@
 #include "taktwerk_lcm/whole_state_v2_t.hpp"
 #include "taktwerk_lcm/whole_state_v3_t.hpp"
 #include "taktwerk_lcm/whole_state_v4_t.hpp"
+#include "taktwerk_lcm/whole_state_v5_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v1_t.hpp"
 #include "taktwerk_lcm/whole_statistics_v2_t.hpp"
 #include "taktwerk_lcm/whole_task_v1_t.hpp"
@@ -79,7 +80,7 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
         EXPECT_EQ(*made, static_cast<std::uint64_t>(generated)) << name;
         EXPECT_EQ(ours().find(*made), &type(name));
     };
-    EXPECT_EQ(ours().types().size(), 34u) << "a new type: a line here";
+    EXPECT_EQ(ours().types().size(), 38u) << "a new type: a line here";
     expect("acknowledge_v1_t", acknowledge_v1_t::getHash());
     expect("alarm_list_v1_t", alarm_list_v1_t::getHash());
     expect("alarm_v1_t", alarm_v1_t::getHash());
@@ -109,6 +110,10 @@ TEST(TypeCatalog, FingerprintsAreThoseOfLcmGen) {
     expect("whole_state_v3_t", whole_state_v3_t::getHash());
     expect("whole_state_v4_t", whole_state_v4_t::getHash());
     expect("whole_group_v2_t", whole_group_v2_t::getHash());
+    expect("whole_state_v5_t", whole_state_v5_t::getHash());
+    expect("whole_group_v3_t", whole_group_v3_t::getHash());
+    expect("whole_refusal_v1_t", whole_refusal_v1_t::getHash());
+    expect("whole_event_v2_t", whole_event_v2_t::getHash());
     expect("whole_group_frame_v1_t", whole_group_frame_v1_t::getHash());
     expect("whole_statistics_v1_t", whole_statistics_v1_t::getHash());
     expect("whole_statistics_v2_t", whole_statistics_v2_t::getHash());

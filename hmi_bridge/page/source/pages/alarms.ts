@@ -44,7 +44,7 @@ function standing_alarms(desk: Desk): Page {
     }, (row, event) => {
         write(row.when, say('ago', { age: duration(Math.max(0, ((desk.link.state?.time_ns ?? 0) - event.time_ns) / 1e9)) }) + (event.times > 1 ? ` ×${event.times}` : ''));
         const { text, known } = said(event.english);
-        write(row.what, `${event.axis ? event.axis + ': ' : ''}${text}`);
+        write(row.what, `${event.axis || event.group ? (event.axis || event.group) + ': ' : ''}${text}`);
         mark(row.what, 'lang', known ? false : 'en');
         write_said(row.remedy, event.remedy);
     });

@@ -35,6 +35,30 @@ export function why_error(group: GroupState): string[] {
     return [name, said(group.error_cause ?? '').text, said(group.error_remedy ?? '').text].filter((text) => text !== '');
 }
 
+/** What it has refused of its program, where and what to do; empty: nothing since it moved. */
+export function why_refused(group: GroupState): string[] {
+    const refusal = group.refusal;
+    if (!refusal) return [];
+    const what = refusal.block ? `${refusal.command} (${refusal.block})` : refusal.command;
+    return [say('group_refused', { what, why: said(refusal.text).text }), said(refusal.where).text, said(refusal.remedy).text].filter((text) => text !== '');
+}
+
+/** A list that is built anew when it says something else; hidden with its panel while it says nothing. */
+function reasons(title: Key, value: string) {
+    const list = element('ul', { class: 'why', 'data-value': value }), root = panel(title, list);
+    let shown = '';
+    root.hidden = true;
+    return {
+        root,
+        update(lines: string[]): void {
+            root.hidden = lines.length === 0;
+            if (shown === lines.join('\n')) return;
+            shown = lines.join('\n');
+            list.replaceChildren(...lines.map((line) => element('li', {}, line)));
+        },
+    };
+}
+
 function tool_table(unit: string) {
     const cells = { tool_actual: components.map(() => element('td', { class: 'number' })), tool_set: components.map(() => element('td', { class: 'number' })) };
     components.forEach((name, i) => {
@@ -78,11 +102,11 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
     const state = element('div', { class: 'state', 'data-value': 'group_state' }), note = element('p', { class: 'hint', 'data-value': 'group_note' });
     const tool = tool_table(unit), facts = new Values(), members = member_rows(), hand = group_hand(desk, name), pad = jog_pad(desk, layout);
     const done = element('i'), progress = element('div', { class: 'progress', role: 'progressbar', 'data-value': 'progress' }, done);
-    const why = element('ul', { class: 'why', 'data-value': 'group_why' }), error = panel('group_why_error', why);
+    const error = reasons('group_why_error', 'group_why'), refused = reasons('group_why_refused', 'group_refused');
     const path = new PathView(unit), trail = new Trail((request) => desk.link.request(request), name, desk.link.layout?.cycle_ns ?? 1e6);
     const unread = element('p', { class: 'hint' }, say('group_path_unread'));
     const drawn = element('section', { class: 'panel' }, element('h2', {}, say('group_path', { seconds: String(trail_seconds) })), path.root, unread);
-    const root = element('div', { class: 'page group' }, element('div', { class: 'bar' }, tabs, element('span', { class: 'space' }), state), error,
+    const root = element('div', { class: 'page group' }, element('div', { class: 'bar' }, tabs, element('span', { class: 'space' }), state), error.root, refused.root,
         element('div', { class: 'columns' },
             element('div', { class: 'stack' }, panel('group_tool', tool.root, note), panel('group_doing', facts.root, progress), pad.root, hand.root),
             element('div', { class: 'stack' }, ...(layout.arm ? [drawn] : []), panel('group_axes', members.root))));
@@ -103,12 +127,8 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
             write_facts(facts, group);
             done.style.width = `${(value(group.progress) * 100).toFixed(1)}%`;
             mark(progress, 'aria-valuenow', String(Math.round(value(group.progress) * 100)));
-            const reasons = why_error(group);
-            error.hidden = reasons.length === 0;
-            if (why.dataset['shown'] !== reasons.join('\n')) {
-                why.dataset['shown'] = reasons.join('\n');
-                why.replaceChildren(...reasons.map((reason) => element('li', {}, reason)));
-            }
+            error.update(why_error(group));
+            refused.update(why_refused(group));
             if (layout.arm) {
                 const nowhere: [number, number, number] = [NaN, NaN, NaN];
                 path.update(trail.points, group.tool_known ? place_of(group.tool_set) : nowhere, group.tool_known ? place_of(group.tool_actual) : nowhere);
@@ -124,13 +144,13 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
 }
 
 function write_facts(facts: Values, group: GroupState): void {
-    const speed = `${group.unit}/s`;
+    const speed = `${group.unit}/s`, path_unit = group.path_unit ?? group.unit;
     facts.set('command', group.command ? `${group.command}${group.block ? ` (${group.block})` : ''}` : '–');
     const left = value(group.remaining_s);
-    facts.set('group_to_go', group.command ? `${fixed(group.distance_to_go, 1)} ${group.unit}${left > 0 ? `, ${duration(left)}` : ''}` : '–');
+    facts.set('group_to_go', group.command ? `${fixed(group.distance_to_go, 1)} ${path_unit}${left > 0 ? `, ${duration(left)}` : ''}` : '–');
     facts.set('group_waiting', String(group.queued));
     facts.set('group_tool_speed', group.tool_known ? `${fixed(group.tool_actual_speed, 1)} ${speed}` : '–');
-    facts.set('group_path_velocity', `${fixed(group.path_velocity, 1)} ${speed}`);
+    facts.set('group_path_velocity', `${fixed(group.path_velocity, 1)} ${path_unit}/s`);
     facts.set('group_limited', held_back(group));
     facts.set('group_track', goes_with(group) || '–');
     facts.set('group_deviation', group.tool_known ? `${fixed(group.path_deviation ?? 0)} ${group.unit}` : '–');

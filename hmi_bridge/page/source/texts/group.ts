@@ -72,5 +72,7 @@ export const group = {
     group_in_error: ['It is in an error: reset it first.', '轴组有故障:请先复位。'],
     group_needs_power: ['Not all of its axes have power.', '并非所有轴都已上电。'],
     group_why_error: ['Why it stopped', '停止原因'],
+    group_why_refused: ['What it refused last', '最近一次拒绝'],
+    group_refused: ['{what} was refused: {why}', '{what} 被拒绝:{why}'],
     group_alarm_of_an_axis: ['The alarm “{alarm}” of one of its axes stopped it.', '其中一个轴的报警“{alarm}”使其停止。'],
 } as const satisfies Record<string, readonly [string, string]>;

@@ -1,0 +1,42 @@
+#pragma once
+// What programs ask of groups of axes, on its way there: carried out as it is, and what is refused, or in its turn ends with an error, is noted among the
+// commands that axes refused (watched_requests.hpp). Real-time safe.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "axes/group/axis_groups.hpp"
+#include "runtime/tasks/watched_requests.hpp"
+
+namespace taktwerk::runtime {
+
+class WatchedGroups {
+public:
+    /// Both must live longer.
+    WatchedGroups(axes::AxisGroups& groups, WatchedRequests& axes) : groups_(groups), axes_(axes), places_(groups.size()) {}
+
+    [[nodiscard]] axes::AxisGroups& groups() noexcept { return groups_; }
+    axes::Submitted submit(axes::GroupRef group, const axes::GroupCommand& command, axes::Owner owner, std::uint16_t program) noexcept;
+    /// Once a cycle, behind the groups' plans. What ends with its program or with everything needs no word of its own.
+    void end_of_cycle(bool everything_ends, const ProgramRecords& programs) noexcept;
+
+private:
+    struct Given {
+        axes::CommandId id = 0;
+        CommandGiver giver;
+    };
+    struct Place {
+        std::array<Given, 32> given{};  // a ring: more than a group holds at a time
+        std::uint8_t next = 0;
+        std::uint8_t ledger = 0;  // up to where the view's is told
+    };
+    [[nodiscard]] CommandEvent event_of(std::size_t group, const CommandGiver& giver, axes::ErrorId error,
+                                        axes::CommandId id) const noexcept;
+
+    axes::AxisGroups& groups_;
+    WatchedRequests& axes_;
+    std::vector<Place> places_;
+};
+
+}  // namespace taktwerk::runtime
