@@ -125,7 +125,7 @@ protected:
     /// Another number on every input that is one.
     void change_inputs(std::int32_t value) {
         const double real = value;
-        for (const Pin& pin : B::pins()) {
+        for (const Pin& pin : pins_of<B>) {
             if (pin.direction != PinDirection::in) continue;
             char* const place = reinterpret_cast<char*>(&block) + pin.offset;
             if (pin.type.kind == PinKind::LREAL) std::memcpy(place, &real, sizeof real);

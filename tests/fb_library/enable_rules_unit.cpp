@@ -80,7 +80,7 @@ TYPED_TEST(EnableRules, EveryOutputGoesBackInTheCallInWhichEnableFalls) {  // P1
 
     this->block.Enable = false;
     this->scan();
-    for (const Pin& pin : TypeParam::pins()) {
+    for (const Pin& pin : pins_of<TypeParam>) {
         if (pin.direction != PinDirection::out || pin.name == "Status") continue;  // MC_Power.Status is the power stage's
         EXPECT_EQ(std::memcmp(reinterpret_cast<const char*>(&this->block) + pin.offset, reinterpret_cast<const char*>(&fresh) + pin.offset,
                               pin.size),
