@@ -7,11 +7,16 @@
 
 namespace taktwerk::fb {
 
-/// Differs when a block or pin is added, removed, moved, renamed or retyped.
-inline constexpr std::uint64_t block_abi_hash = [] {
+namespace detail {
+template <class... Blocks>
+consteval std::uint64_t layouts_hash(BlockList<Blocks...>) {
     std::uint64_t hash = 0xCBF29CE484222325;
-    for (const BlockType& type : types_of<AllBlocks>) hash = layout_hash(hash, type);
+    ((hash = layout_hash(hash, block_layout<Blocks>())), ...);
     return hash;
-}();
+}
+}  // namespace detail
+
+/// Differs when a block or pin is added, removed, moved, renamed or retyped.
+inline constexpr std::uint64_t block_abi_hash = detail::layouts_hash(AllBlocks{});
 
 }  // namespace taktwerk::fb

@@ -3,7 +3,6 @@
 #include <map>
 #include <string_view>
 
-#include "fb_library/all_blocks.hpp"
 #include "fb_library/block_types.hpp"
 
 namespace taktwerk::fb {
@@ -50,19 +49,19 @@ std::string block_reference_markdown() {
         "Pins keep their values between calls; a block acts only when called.\n";
 
     page += "\n## IEC 61131-3\n";
-    for (const BlockType& type : types_of<IecBlocks>) append_block(page, type);
+    for (const BlockType& type : iec_block_types()) append_block(page, type);
     page += "\n## PLCopen motion\n";
-    for (const BlockType& type : types_of<MotionBlocks>) append_block(page, type);
+    for (const BlockType& type : motion_block_types()) append_block(page, type);
     page += "\n## PLCopen homing\n";
-    for (const BlockType& type : types_of<HomingBlocks>) append_block(page, type);
+    for (const BlockType& type : homing_block_types()) append_block(page, type);
     page += "\n## PLCopen groups\n";
-    for (const BlockType& type : types_of<GroupBlocks>) append_block(page, type);
+    for (const BlockType& type : group_block_types()) append_block(page, type);
 
     page += "\n## Stored paths\n";
-    for (const BlockType& type : types_of<PathBlocks>) append_block(page, type);
+    for (const BlockType& type : path_block_types()) append_block(page, type);
 
     page += "\n## Fieldbus\n";
-    for (const BlockType& type : types_of<FieldbusBlocks>) append_block(page, type);
+    for (const BlockType& type : fieldbus_block_types()) append_block(page, type);
 
     std::map<std::string_view, std::span<const std::string_view>> enumerations;
     for (const BlockType& type : all_block_types())

@@ -35,8 +35,6 @@ namespace detail {
 
 template <class Block>
 inline constexpr Block prototype_of{};
-template <class Block>
-inline constexpr auto pins_of = Block::pins();
 
 template <class Block>
 void run_block(void* bytes, const axes::MotionContext& context) noexcept {
@@ -49,6 +47,12 @@ void warm_start_block([[maybe_unused]] void* bytes, [[maybe_unused]] Instant now
 
 }  // namespace detail
 
+/// What a user of the block relies on, without what runs it.
+template <class Block>
+[[nodiscard]] consteval BlockType block_layout() {
+    return {block_name<Block>(), {}, sizeof(Block), alignof(Block), nullptr, nullptr, nullptr, pins_of<Block>};
+}
+
 template <class Block>
 [[nodiscard]] consteval BlockType block_type() {
     static_assert(std::is_trivially_copyable_v<Block> && std::is_trivially_destructible_v<Block>,
@@ -60,7 +64,7 @@ template <class Block>
             &detail::prototype_of<Block>,
             &detail::run_block<Block>,
             &detail::warm_start_block<Block>,
-            detail::pins_of<Block>};
+            pins_of<Block>};
 }
 
 /// FNV-1a over what a user of the block relies on: name, size, alignment and each pin's name, direction, type (with

@@ -77,6 +77,7 @@ struct EC_SdoRead : ExecuteBlock<EC_SdoRead> {
     detail::ObjectRequest request{};  ///< not a pin
 
     static constexpr std::string_view summary = "Reads an object of a slave (SDO upload) without disturbing the cycle.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in_out<&Self::Device>("", "slave that has the object"),
@@ -133,6 +134,7 @@ struct EC_SdoWrite : ExecuteBlock<EC_SdoWrite> {
     detail::ObjectRequest request{};  ///< not a pin
 
     static constexpr std::string_view summary = "Writes an object of a slave (SDO download) without disturbing the cycle.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in_out<&Self::Device>("", "slave that has the object"),

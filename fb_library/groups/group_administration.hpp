@@ -19,6 +19,7 @@ struct MC_AddAxisToGroup : GroupSettingBlock<MC_AddAxisToGroup> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Makes an axis a member of a disabled group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(), shared<&Self::Axis>(), grouped<&Self::Execute, &Self::IdentInGroup>(),
                          out<&Self::Done>("", "the axis is a member"), grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -36,6 +37,7 @@ struct MC_RemoveAxisFromGroup : GroupSettingBlock<MC_RemoveAxisFromGroup> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Takes a member out of a disabled group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::IdentInGroup>(), out<&Self::Done>("", "the axis is free"),
                          grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -52,6 +54,7 @@ struct MC_UngroupAllAxes : GroupSettingBlock<MC_UngroupAllAxes> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Takes all members out of a group, which is disabled then.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), out<&Self::Done>("", "the group is empty and disabled"),
                          grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -68,6 +71,7 @@ struct MC_GroupEnable : GroupSettingBlock<MC_GroupEnable> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Leads a group from GroupDisabled to GroupStandby.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), out<&Self::Done>("", "the group is enabled"),
                          grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -84,6 +88,7 @@ struct MC_GroupDisable : GroupCommandBlock<MC_GroupDisable> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Ends all commands of a group and leads it to GroupDisabled.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), out<&Self::Done>("", "the group is disabled"),
                          grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -105,6 +110,7 @@ struct MC_GroupPower {
     std::array<AxisRef, axes::most_members> held{};  ///< not a pin: whom it keeps on; one that leaves the group meanwhile is let go
 
     static constexpr std::string_view summary = "Switches the power stages of all members on and off.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(), in<&Self::Enable>("", "power stages on while TRUE"),
                          out<&Self::Status>("", "the power stages of all members are on"),
@@ -155,6 +161,7 @@ struct MC_GroupReset : ExecuteBlock<MC_GroupReset> {
     static constexpr Duration patience = std::chrono::seconds{10};
 
     static constexpr std::string_view summary = "Clears the errors of a group and its members: from GroupErrorStop to GroupStandby.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), out<&Self::Done>("", "the group is not in GroupErrorStop (any more)"),
                          grouped<&Self::Busy>(), out<&Self::Error>("", "refused, or a member cannot be reset"), grouped<&Self::ErrorID>());

@@ -44,6 +44,7 @@ struct MC_ReadKinTransform : EnableBlock<MC_ReadKinTransform> {
     MC_KIN_REF KinTransform{};
 
     static constexpr std::string_view summary = "Gives which arm the group is, and where it stands in the machine.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::KinTransform>("", "kind, joints, base"));
     }
@@ -68,6 +69,7 @@ struct MC_ReadDHParameters : EnableBlock<MC_ReadDHParameters> {
     fb::MC_DHParameters DHParameters{};
 
     static constexpr std::string_view summary = "Gives the arm's table of Denavit and Hartenberg.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::DHParameters>("", "rad, u; Modified says in which convention"));
@@ -96,6 +98,7 @@ struct MC_ReadJointInfo : EnableBlock<MC_ReadJointInfo> {
     MC_JointInfo JointInfo{};
 
     static constexpr std::string_view summary = "Gives where each joint of the arm has its zero, and in which sense it counts.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::JointInfo>("", "from the base on"));
     }
@@ -127,6 +130,7 @@ struct MC_GroupTransformPosition : EnableBlock<MC_GroupTransformPosition> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Gives a position of the group in another frame.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::InputPosition>("", "A in ACS, else C"),
                          in<&Self::InputCoordSystem>("", "of the input"), in<&Self::OutputCoordSystem>("", "of the output"),
@@ -167,6 +171,7 @@ struct MC_GroupSetPosition : GroupCommandBlock<MC_GroupSetPosition> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says where the group is, without motion.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Position>("", "where it is: A in ACS, else C"),

@@ -20,6 +20,7 @@ struct MC_GroupWriteRigidBodyDynamic : GroupSettingBlock<MC_GroupWriteRigidBodyD
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Keeps the rigid bodies that the group's links are, for who asks for them.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::RigidBodyCount>("", "0 to 8"),
                          in<&Self::RigidBodyDynamic>("", "kg, u, kg m2; from the base on"),
@@ -43,6 +44,7 @@ struct MC_GroupReadRigidBodyDynamic : EnableBlock<MC_GroupReadRigidBodyDynamic> 
     RigidBodies RigidBodyDynamic{};
 
     static constexpr std::string_view summary = "Gives the rigid bodies that were written.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), out<&Self::CommandAborted>("", "never: it only reads"),
                          reading<Self>(), out<&Self::RigidBodyCount>("", "0 to 8"), out<&Self::RigidBodyDynamic>("", "kg, u, kg m2"));

@@ -23,6 +23,7 @@ struct MC_SetCartesianTransform : GroupCommandBlock<MC_SetCartesianTransform> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says where a product's frame, or the machine, stands in the world.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::TransX>("u", "of its origin, in the world"),
                          in<&Self::TransY>("u", "likewise"), in<&Self::TransZ>("u", "likewise"),
@@ -52,6 +53,7 @@ struct MC_SetCoordinateTransform : GroupCommandBlock<MC_SetCoordinateTransform> 
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says where a product's frame, or the machine, stands in the world.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::CoordTransform>("", "u, rad: seen from the world"),
                          in<&Self::CoordSystem>("", "mcPCS, mcPCS_2 to mcPCS_8, mcMCS"), detail::when_set<&Self::ExecutionMode>(),
@@ -77,6 +79,7 @@ struct MC_ReadCartesianTransform : EnableBlock<MC_ReadCartesianTransform> {
     double TransX = 0, TransY = 0, TransZ = 0, RotAngle1 = 0, RotAngle2 = 0, RotAngle3 = 0;
 
     static constexpr std::string_view summary = "Gives where a frame of the group stands in the world.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
                          out<&Self::TransX>("u", "of its origin, in the world"), out<&Self::TransY>("u", "likewise"),
@@ -104,6 +107,7 @@ struct MC_ReadCoordinateTransform : EnableBlock<MC_ReadCoordinateTransform> {
     MC_COORD_REF CoordTransform{};
 
     static constexpr std::string_view summary = "Gives where a frame of the group stands in the world.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
                          out<&Self::CoordTransform>("", "u, rad: seen from the world"));

@@ -19,6 +19,7 @@ struct MC_GroupHome : GroupCommandBlock<MC_GroupHome> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Homes all members of the group, one after the other.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(),

@@ -35,6 +35,7 @@ struct MC_GroupJog {
     JogCore core{};  ///< not a pin
 
     static constexpr std::string_view summary = "Moves the group as long as an input of a member, or of a direction of the tool, is TRUE.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(),
                          in<&Self::JogPositive>("", "ACS: of each member by IdentInGroup; else X, Y, Z, and turns about them"),
@@ -75,6 +76,7 @@ struct MC_GroupJogVector {
     JogCore core{};  ///< not a pin
 
     static constexpr std::string_view summary = "Moves the tool in a direction, as fast as its length says.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Enable>(),
@@ -115,6 +117,7 @@ struct MC_GroupWriteJoggingDynamics : GroupSettingBlock<MC_GroupWriteJoggingDyna
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says how fast the group is jogged.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(),
                          in<&Self::Velocity>("u/s", "of the tool's point; 0 or less = stays as it is"),
@@ -141,6 +144,7 @@ struct MC_GroupReadJoggingDynamics : GroupReadBlock<MC_GroupReadJoggingDynamics>
     AxisValues AxisVelocity{}, AxisAcceleration{}, AxisDeceleration{}, AxisJerk{};
 
     static constexpr std::string_view summary = "Gives how fast the group is jogged.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::Velocity>("u/s", "of the tool's point; 0 = not said"), out<&Self::Acceleration>("u/s2", "likewise"),

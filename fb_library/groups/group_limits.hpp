@@ -19,6 +19,7 @@ struct MC_GroupWriteDefaultDynamics : GroupSettingBlock<MC_GroupWriteDefaultDyna
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says how fast the group moves where a command does not.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Velocity>("u/s", "along the path; 0 or less = stays as it is"),
@@ -39,6 +40,7 @@ struct MC_GroupReadDefaultDynamics : GroupReadBlock<MC_GroupReadDefaultDynamics>
     double Velocity = 0, Acceleration = 0, Deceleration = 0, Jerk = 0;
 
     static constexpr std::string_view summary = "Gives how fast the group moves where a command does not say it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::Velocity>("u/s", "along the path; 0 = what the axes' limits leave"),
@@ -66,6 +68,7 @@ struct MC_GroupReadSWLimits : GroupReadBlock<MC_GroupReadSWLimits> {
     MC_GROUP_SWLIMITS LimitValues{};
 
     static constexpr std::string_view summary = "Gives the software limits of all members.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(), out<&Self::LimitValues>("", "u; infinity = none"));
     }
@@ -95,6 +98,7 @@ struct MC_GroupWriteSWLimits : GroupSettingBlock<MC_GroupWriteSWLimits> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Writes the software limits of all members, or of none.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(),
                          in<&Self::LimitValues>("", "u, of each member by IdentInGroup; infinite = stays as it is"),

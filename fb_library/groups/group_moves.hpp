@@ -42,6 +42,7 @@ struct MC_MoveLinearAbsolute : GroupCommandBlock<MC_MoveLinearAbsolute> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Moves the tool's point, in ACS the axes, on a straight line to a position.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::Position, &Self::Velocity, &Self::Acceleration,
                                  &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode, &Self::TransitionVelocity,
@@ -71,6 +72,7 @@ struct MC_MoveLinearRelative : GroupCommandBlock<MC_MoveLinearRelative> {
 
     static constexpr std::string_view summary =
         "Moves the tool's point, in ACS the axes, on a straight line by a distance from where the command begins.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::Distance, &Self::Velocity, &Self::Acceleration,
                                  &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode, &Self::TransitionVelocity,
@@ -120,6 +122,7 @@ struct MC_MoveCircularAbsolute : GroupCommandBlock<MC_MoveCircularAbsolute> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Moves the tool's point on an arc to a position.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(), circle_pins<Self>(),
@@ -152,6 +155,7 @@ struct MC_MoveCircularRelative : GroupCommandBlock<MC_MoveCircularRelative> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Moves the tool's point on an arc, whose points count from where the command begins.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(), circle_pins<Self>(),
@@ -180,6 +184,7 @@ struct MC_MoveDirectAbsolute : GroupCommandBlock<MC_MoveDirectAbsolute> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Moves all axes to a position, beginning and ending together, on a line of the axes.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::Position, &Self::Velocity, &Self::Acceleration,
                                  &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode, &Self::TransitionVelocity,
@@ -207,6 +212,7 @@ struct MC_MoveDirectRelative : GroupCommandBlock<MC_MoveDirectRelative> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Moves all axes by a distance, beginning and ending together, on a line of the axes.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::Distance, &Self::Velocity, &Self::Acceleration,
                                  &Self::Deceleration, &Self::Jerk, &Self::CoordSystem, &Self::BufferMode, &Self::TransitionVelocity,
@@ -230,6 +236,7 @@ struct MC_GroupWaitTime : GroupCommandBlock<MC_GroupWaitTime> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Waits in its turn between the commands of a group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Duration>("", "how long; Done not earlier"),
                          grouped<&Self::BufferMode>(), out<&Self::Done>("", "the time is over"),

@@ -36,6 +36,7 @@ struct MC_GroupReadParameter : GroupReadBlock<MC_GroupReadParameter> {
     double Value = 0;
 
     static constexpr std::string_view summary = "Gives the value of a parameter of the group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::ParameterNumber>("", "mcDynamicsMode"), reading<Self>(),
                          out<&Self::Value>("1", "mcDynamicsMode: 0 mcAbsolute, 1 mcPercentage"));
@@ -63,6 +64,7 @@ struct MC_GroupWriteParameter : GroupSettingBlock<MC_GroupWriteParameter> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Writes a parameter of the group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::ParameterNumber>("", "mcDynamicsMode"),
                          in<&Self::Value>("1", "mcDynamicsMode: 0 mcAbsolute, 1 mcPercentage"),
@@ -90,6 +92,7 @@ struct MC_GroupWriteReferenceDynamics : GroupSettingBlock<MC_GroupWriteReference
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says what 100 percent are, where commands say percents (mcPercentage).";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::Velocity>("u/s", "along the path; 0 or less = stays as it is"),
@@ -110,6 +113,7 @@ struct MC_GroupReadReferenceDynamics : GroupReadBlock<MC_GroupReadReferenceDynam
     double Velocity = 0, Acceleration = 0, Deceleration = 0, Jerk = 0;
 
     static constexpr std::string_view summary = "Gives what 100 percent of a command's dynamics are.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::Velocity>("u/s", "along the path; 0 = not said: percents are refused"),

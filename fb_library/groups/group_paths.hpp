@@ -19,6 +19,7 @@ struct MC_PathSelect : ExecuteBlock<MC_PathSelect> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Prepares a stored path for MC_MovePath: looks through all of its text.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(), in_out<&Self::PathData>("", "the prepared path, once Done is TRUE"),
                          in_out<&Self::PathDescription>("", "which path, and how it is to be gone"), grouped<&Self::Execute>(),
@@ -65,6 +66,7 @@ struct MC_MovePath : GroupCommandBlock<MC_MovePath> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Moves the tool's point along a stored path, from where it stands to the path's end.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup>(), in_out<&Self::PathData>("", "from MC_PathSelect"),
@@ -99,6 +101,7 @@ struct Path_Handshake : GroupReadBlock<Path_Handshake> {
     ErrorId FaultID{};
 
     static constexpr std::string_view summary = "Shows where a stored path is and what it asks for, and answers it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(),
                          in<&Self::Acknowledge>("", "a rising edge while Waits: it is done, the path goes on"), reading<Self>(),

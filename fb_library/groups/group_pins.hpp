@@ -42,8 +42,9 @@ inline constexpr std::array group_pins{
 
 template <auto M>
 consteval Pin group_pin() {
+    Pin pin = detail::pin<M>({}, {}, {});
     for (const SharedPin& known : group_pins)
-        if (known.name == member_name<M>()) return pin<M>(known.direction, known.unit, known.doc);
+        if (known.name == pin.name) return pin.direction = known.direction, pin.unit = known.unit, pin.doc = known.doc, pin;
     throw "no group pin has this name";  // not a constant: the build stops here
 }
 

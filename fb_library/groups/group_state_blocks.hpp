@@ -19,6 +19,7 @@ struct MC_GroupReadStatus : GroupReadBlock<MC_GroupReadStatus> {
          GroupDisabled = false;
 
     static constexpr std::string_view summary = "Gives the group's state: exactly one of six outputs is TRUE while Valid.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::GroupMoving>("", "the group moves its axes, or waits between two moves"),
@@ -56,6 +57,7 @@ struct MC_GroupReadMotionState : GroupReadBlock<MC_GroupReadMotionState> {
     CommandNumber ActiveCommandID{};
 
     static constexpr std::string_view summary = "Gives how the group moves along its path.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::Tracking>("", "goes with a frame that moves, joins it, or leaves it"),
@@ -97,6 +99,7 @@ struct MC_GroupReadError : GroupReadBlock<MC_GroupReadError> {
     std::uint16_t GroupErrorID = 0;
 
     static constexpr std::string_view summary = "Gives the error that led the group to GroupErrorStop, until it is reset.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), reading<Self>(),
                          out<&Self::GroupErrorID>("", "alarm id of a member, or an ErrorID; 0 = none"));
@@ -122,6 +125,7 @@ struct MC_GroupReadCommandInfo : GroupReadBlock<MC_GroupReadCommandInfo> {
     std::uint16_t InfoID = 0, WarningID = 0;
 
     static constexpr std::string_view summary = "Gives how far a command of the group has come.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::CommandID>("", "as the command's block gave it"), reading<Self>(),
@@ -164,6 +168,7 @@ struct MC_GroupReadConfiguration : GroupReadBlock<MC_GroupReadConfiguration> {
     AxisNumber AxisID{};
 
     static constexpr std::string_view summary = "Gives the axis behind an identifier.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::IdentInGroup>(), in<&Self::CoordSystem>("", "mcACS"),
                          reading<Self>(), out<&Self::Axis>("", "the member"),
@@ -196,6 +201,7 @@ struct MC_ReadAxisGroupInfo : EnableBlock<MC_ReadAxisGroupInfo> {
     fb::IdentInGroup IdentInGroup{};
 
     static constexpr std::string_view summary = "Gives the group that an axis is in.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), grouped<&Self::Enable>(), reading<Self>(), out<&Self::AxesGroup>("", "the group"),
                          out<&Self::AxesGroupID>("", "its number in the configuration, from 1 on"),

@@ -17,6 +17,7 @@ struct MC_GroupStop : GroupCommandBlock<MC_GroupStop> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Stops the group on its path, ends all its commands and locks it while Execute is TRUE.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(), in<&Self::Execute>("", "a rising edge stops; the group stays locked while TRUE"),
                          grouped<&Self::Deceleration, &Self::Jerk>(), out<&Self::Done>("", "the path velocity is zero"),
@@ -46,6 +47,7 @@ struct MC_GroupHalt : GroupCommandBlock<MC_GroupHalt> {
     CommandNumber CommandID{};
 
     static constexpr std::string_view summary = "Brings the group to standstill on its path; any other command may take over meanwhile.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::Deceleration, &Self::Jerk, &Self::BufferMode>(),
                          out<&Self::Done>("", "the path velocity is zero"),
@@ -67,6 +69,7 @@ struct MC_GroupInterrupt : GroupCommandBlock<MC_GroupInterrupt> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Stops the group on its path and keeps its commands.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute, &Self::Deceleration, &Self::Jerk>(),
                          out<&Self::Done>("", "the group stands and can go on"), grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -85,6 +88,7 @@ struct MC_GroupContinue : GroupCommandBlock<MC_GroupContinue> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Goes on with what MC_GroupInterrupt has interrupted.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), out<&Self::Done>("", "the group goes on"),
                          grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -105,6 +109,7 @@ struct MC_GroupSetOverride {
     EnableCore core{};  ///< not a pin
 
     static constexpr std::string_view summary = "Scales velocity, acceleration and jerk along the path; the path stays as it is.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::VelFactor>("1", "0 to 1; 0 holds on the path; default 1"),
                          in<&Self::AccFactor>("1", "above 0 to 1, on acceleration and deceleration; default 1"),

@@ -24,6 +24,7 @@ struct MC_SyncAxisToGroup : ExecuteBlock<MC_SyncAxisToGroup> {
     bool InSync = false;
 
     static constexpr std::string_view summary = "Lets an axis follow the length of a group's path.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup>(), in_out<&Self::SlaveAxis>("", "following axis; no member of the group"), grouped<&Self::Execute>(),
@@ -90,6 +91,7 @@ struct MC_SyncGroupToAxis : GroupCommandBlock<MC_SyncGroupToAxis> {
     bool InSync = false;
 
     static constexpr std::string_view summary = "Moves the tool's point along a stored path as an axis moves: on, to a stop and back.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(),
                          in_out<&Self::Master>("", "the axis or encoder that drives the path; no member of the group"),

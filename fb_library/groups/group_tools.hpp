@@ -24,6 +24,7 @@ struct MC_GroupWriteToolData : GroupCommandBlock<MC_GroupWriteToolData> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Defines a tool of the group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::ToolNumber>("", "1 to 31"),
@@ -49,6 +50,7 @@ struct MC_GroupReadToolData : EnableBlock<MC_GroupReadToolData> {
     MC_TOOL_REF ToolData{};
 
     static constexpr std::string_view summary = "Gives a tool of the group as it was written.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::ToolNumber>("", "0 to 31; 0 is the flange"), reading<Self>(),
                          out<&Self::ToolData>("", "the tool's point, seen from the flange; its mass"));
@@ -73,6 +75,7 @@ struct MC_GroupSelectTool : GroupSettingBlock<MC_GroupSelectTool> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says whose point the next commands move.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::ToolNumber>("", "0 to 31; 0 is the flange"),
                          out<&Self::Done>("", "later commands have it"), grouped<&Self::Busy, &Self::Error, &Self::ErrorID>());
@@ -91,6 +94,7 @@ struct MC_GroupReadTool : EnableBlock<MC_GroupReadTool> {
     std::int16_t ToolNumber = 0;
 
     static constexpr std::string_view summary = "Gives whose point moves now, or with the next command.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(),
                          in<&Self::ToolSource>("", "of the running command, or for the next one"), reading<Self>(),
@@ -115,6 +119,7 @@ struct MC_GroupWritePayloadData : GroupSettingBlock<MC_GroupWritePayloadData> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Defines a payload of the group.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::PayloadNumber>("", "1 to 31"),
                          in<&Self::PayloadData>("", "in the frame of the tool's point; kg, u, kg m2"),
@@ -136,6 +141,7 @@ struct MC_GroupReadPayloadData : EnableBlock<MC_GroupReadPayloadData> {
     MC_RIGID_BODY_DYNAMIC_REF PayloadData{};
 
     static constexpr std::string_view summary = "Gives a payload of the group as it was written.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::PayloadNumber>("", "0 to 31; 0 is none"), reading<Self>(),
                          out<&Self::PayloadData>("", "in the frame of the tool's point; kg, u, kg m2"));
@@ -160,6 +166,7 @@ struct MC_GroupSelectPayload : GroupSettingBlock<MC_GroupSelectPayload> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Says what the arm carries with the next commands.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Execute>(), in<&Self::PayloadNumber>("", "0 to 31; 0 is none"),
                          out<&Self::CommandAborted>("", "never: it is selected at once"), out<&Self::Done>("", "later commands have it"),
@@ -178,6 +185,7 @@ struct MC_GroupReadPayload : EnableBlock<MC_GroupReadPayload> {
     std::int16_t PayloadNumber = 0;
 
     static constexpr std::string_view summary = "Gives what the arm carries now, or with the next command.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Enable>(), in<&Self::PayloadSource>("", "of the running command, or for the next one"),

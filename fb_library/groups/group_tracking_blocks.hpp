@@ -41,6 +41,7 @@ struct MC_TrackConveyorBelt : GroupCommandBlock<MC_TrackConveyorBelt> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Lets a product's frame go with a belt.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(),
                          in_out<&Self::ConveyorBelt>("", "the belt's axis or encoder: 1 u of it is 1 u of way"), grouped<&Self::Execute>(),
@@ -68,6 +69,7 @@ struct MC_TrackRotaryTable : GroupCommandBlock<MC_TrackRotaryTable> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Lets a product's frame turn with a table.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup>(), in_out<&Self::RotaryTable>("", "the table's axis: its modulo is one turn"),
                          grouped<&Self::Execute>(),

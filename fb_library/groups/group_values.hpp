@@ -51,6 +51,7 @@ struct MC_GroupReadPosition : GroupReadBlock<MC_GroupReadPosition> {
     MC_POS_REF Position{};
 
     static constexpr std::string_view summary = "Gives where the group is.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
@@ -79,6 +80,7 @@ struct MC_GroupReadVelocity : GroupReadBlock<MC_GroupReadVelocity> {
     double PathVelocity = 0;
 
     static constexpr std::string_view summary = "Gives how fast the group moves.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem, &Self::Source>(), reading<Self>(),
                          out<&Self::Velocity>("", "u/s of each member; in other frames of X, Y, Z, and rad/s about them"),
@@ -109,6 +111,7 @@ struct MC_GroupReadAcceleration : GroupReadBlock<MC_GroupReadAcceleration> {
     double PathAcceleration = 0;
 
     static constexpr std::string_view summary = "Gives the group's set acceleration.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), in<&Self::Source>("", "mcSetValue"),
                          reading<Self>(), out<&Self::Acceleration>("", "u/s2 of each member"),
@@ -139,6 +142,7 @@ struct MC_GroupReadActualPosition : GroupReadBlock<MC_GroupReadActualPosition> {
     AxisValues Position{};
 
     static constexpr std::string_view summary = "Gives the group's actual position (v1.0; v2.0: MC_GroupReadPosition).";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
                          out<&Self::Position>("", "u of each member; in other frames X, Y, Z, RX, RY, RZ"));
@@ -164,6 +168,7 @@ struct MC_GroupReadActualVelocity : GroupReadBlock<MC_GroupReadActualVelocity> {
     double PathVelocity = 0;
 
     static constexpr std::string_view summary = "Gives the group's actual velocity (v1.0; v2.0: MC_GroupReadVelocity).";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable, &Self::CoordSystem>(), reading<Self>(),
                          out<&Self::Velocity>("", "u/s of each member; in other frames of X, Y, Z, and rad/s about them"),

@@ -14,6 +14,7 @@ struct SR {
     bool Q1 = false;
 
     static constexpr std::string_view summary = "Bistable, set dominant: Q1 := S1 OR (NOT R AND Q1).";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&SR::S1>("", "set, dominant"),
@@ -30,6 +31,7 @@ struct RS {
     bool Q1 = false;
 
     static constexpr std::string_view summary = "Bistable, reset dominant: Q1 := NOT R1 AND (S OR Q1).";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&RS::S>("", "set"),

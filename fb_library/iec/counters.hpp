@@ -49,6 +49,7 @@ struct CountUp {
 
     static constexpr std::string_view block_name = detail::variant<T>({"CTU", "CTU_DINT", "CTU_LINT", "CTU_UDINT", "CTU_ULINT"});
     static constexpr std::string_view summary = "Counts rising edges up; Q when CV has reached PV.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&CountUp::CU>("", "count, rising edge"),
@@ -77,6 +78,7 @@ struct CountDown {
 
     static constexpr std::string_view block_name = detail::variant<T>({"CTD", "CTD_DINT", "CTD_LINT", "CTD_UDINT", "CTD_ULINT"});
     static constexpr std::string_view summary = "Counts rising edges down from PV; Q when CV has reached 0.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&CountDown::CD>("", "count, rising edge"),
@@ -105,6 +107,7 @@ struct CountUpDown {
 
     static constexpr std::string_view block_name = detail::variant<T>({"CTUD", "CTUD_DINT", "CTUD_LINT", "CTUD_UDINT", "CTUD_ULINT"});
     static constexpr std::string_view summary = "Counts up and down; QU when CV has reached PV, QD when it has reached 0.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&CountUpDown::CU>("", "count up, rising edge"),

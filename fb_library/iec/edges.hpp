@@ -18,6 +18,7 @@ struct R_TRIG {
     bool M = false;  ///< CLK of the last call; not a pin
 
     static constexpr std::string_view summary = "Rising edge: Q is TRUE for one call when CLK has become TRUE.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&R_TRIG::CLK>("", "signal"),
@@ -37,6 +38,7 @@ struct F_TRIG {
     bool M = false;  ///< NOT CLK of the last call; not a pin
 
     static constexpr std::string_view summary = "Falling edge: Q is TRUE for one call when CLK has become FALSE.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&F_TRIG::CLK>("", "signal"),

@@ -60,6 +60,7 @@ struct TON {
     TimerState state{};
 
     static constexpr std::string_view summary = "On-delay: Q follows a rising IN after PT, a falling IN at once.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&TON::IN>("", "starts the delay while TRUE"),
@@ -91,6 +92,7 @@ struct TOF {
     TimerState state{};
 
     static constexpr std::string_view summary = "Off-delay: Q follows a rising IN at once, a falling IN after PT.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&TOF::IN>("", "a falling edge starts the delay, a rising one cancels it"),
@@ -122,6 +124,7 @@ struct TP {
     TimerState state{};
 
     static constexpr std::string_view summary = "Pulse: a rising IN gives one pulse of length PT, whatever IN does meanwhile.";
+    template <class Self>
     static consteval auto pins() {
         return std::array{
             in<&TP::IN>("", "a rising edge starts the pulse; ignored while it lasts"),

@@ -23,6 +23,7 @@ struct MC_Reset : ExecuteBlock<MC_Reset> {
     static constexpr Duration patience = std::chrono::seconds{10};
 
     static constexpr std::string_view summary = "Clears the axis' errors: from ErrorStop to Standstill or Disabled.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), out<&Self::Done>("", "the axis is not in ErrorStop (any more)"),
                          shared<&Self::Busy>(), out<&Self::Error>("", "refused, or the cause is still there"), shared<&Self::ErrorID>());
@@ -61,6 +62,7 @@ struct MC_SetPosition : SettingBlock<MC_SetPosition> {
     ErrorId ErrorID{};
 
     static constexpr std::string_view summary = "Shifts the axis' coordinates: set and actual position alike, without motion.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::Position>("u", "the actual position's new value; with Relative added to it"),

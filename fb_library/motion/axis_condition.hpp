@@ -20,6 +20,7 @@ struct MC_ReadAxisInfo : EnableBlock<MC_ReadAxisInfo> {
          ReadyForPowerOn = false, PowerOn = false, IsHomed = false, AxisWarning = false;
 
     static constexpr std::string_view summary = "Gives switches, readiness and reference of the axis.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(), out<&Self::HomeAbsSwitch>("", "home switch is on"),
                          out<&Self::LimitSwitchPos>("", "limit switch in positive direction is on"),
@@ -78,6 +79,7 @@ struct MC_ReadMotionState : EnableBlock<MC_ReadMotionState> {
 
     static constexpr std::string_view summary =
         "Says whether the axis accelerates, decelerates or keeps its velocity, and which way it goes.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), in<&Self::Source>("", "whose velocity: the set-point's or the actual one"),
                          reading<Self>(), out<&Self::ConstantVelocity>("", "velocity is constant, also zero"),

@@ -18,6 +18,7 @@ struct MC_ReadActualVelocity : EnableBlock<MC_ReadActualVelocity> {
     double Velocity = 0;
 
     static constexpr std::string_view summary = "Gives the axis' actual velocity.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(), out<&Self::Velocity>("u/s", "signed; 0 while not Valid"));
     }
@@ -40,6 +41,7 @@ struct MC_ReadActualTorque : EnableBlock<MC_ReadActualTorque> {
     double Torque = 0;
 
     static constexpr std::string_view summary = "Gives the axis' actual torque.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
                          out<&Self::Torque>("rated", "signed fraction of the motor's rated torque; 0 while not Valid"));
@@ -63,6 +65,7 @@ struct MC_ReadCommandPosition : EnableBlock<MC_ReadCommandPosition> {
     double Position = 0;
 
     static constexpr std::string_view summary = "Gives the axis' set position.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
                          out<&Self::Position>("u", "set position; 0 while not Valid"));
@@ -86,6 +89,7 @@ struct MC_ReadCommandVelocity : EnableBlock<MC_ReadCommandVelocity> {
     double Velocity = 0;
 
     static constexpr std::string_view summary = "Gives the axis' set velocity.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(), out<&Self::Velocity>("u/s", "signed; 0 while not Valid"));
     }
@@ -108,6 +112,7 @@ struct MC_ReadCommandAcceleration : EnableBlock<MC_ReadCommandAcceleration> {
     double Acceleration = 0;
 
     static constexpr std::string_view summary = "Gives the axis' set acceleration.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
                          out<&Self::Acceleration>("u/s2", "signed; 0 while not Valid"));

@@ -22,6 +22,7 @@ struct MC_SetBrake : ExecuteBlock<MC_SetBrake> {
     bool Released = false;
 
     static constexpr std::string_view summary = "Opens or closes the holding brake of an axis, where the controller works it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Release>("", "TRUE opens it, FALSE closes it"),
                          out<&Self::Done>("", "it is open, or closed, by the time that it needs"), outcome<Self>(),

@@ -24,6 +24,7 @@ struct MC_CamTableSelect : SettingBlock<MC_CamTableSelect> {
     CamId CamTableID{};
 
     static constexpr std::string_view summary = "Checks a cam and prepares it for MC_CamIn.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Master, &Self::Slave>(), in_out<&Self::CamTable>("", "a declared cam"), shared<&Self::Execute>(),
                          in<&Self::Periodic>("", "repeats without end; FALSE: runs once"),
@@ -75,6 +76,7 @@ struct MC_CamIn : CommandBlock<MC_CamIn> {
     static constexpr auto kind = axes::CommandKind::cam_in;
     static constexpr bool MC_CamIn::*in_target_pin = &MC_CamIn::InSync;
     static constexpr std::string_view summary = "Couples the slave's position to the master's by a cam.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Master, &Self::Slave, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::MasterOffset>("u of master", "shift of the cam along the master"),
@@ -113,6 +115,7 @@ struct MC_CamOut : CommandBlock<MC_CamOut> {
 
     static constexpr auto kind = axes::CommandKind::cam_out;
     static constexpr std::string_view summary = "Releases the slave from its cam; it goes on with the velocity it has.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Slave, &Self::Execute>(), out<&Self::Done>("", "the slave is free"), outcome<Self>());
     }

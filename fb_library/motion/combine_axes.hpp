@@ -23,6 +23,7 @@ struct MC_CombineAxes : CommandBlock<MC_CombineAxes> {
     static constexpr auto kind = axes::CommandKind::combine;
     static constexpr bool MC_CombineAxes::*in_target_pin = &MC_CombineAxes::InSync;
     static constexpr std::string_view summary = "Moves the slave by the sum or difference of two masters.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(in_out<&Self::Master1>("", "first leading axis; taken at the edge"),
                          in_out<&Self::Master2>("", "second leading axis; taken at the edge"),

@@ -20,6 +20,7 @@ struct MC_SetControllerMode : CommandBlock<MC_SetControllerMode> {
 
     static constexpr auto kind = axes::CommandKind::set_controller_mode;
     static constexpr std::string_view summary = "Changes which loop the drive closes: position, velocity or torque.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Mode>("", "which loop"),
                          out<&Self::Done>("", "the drive is in the mode"), outcome<Self>());

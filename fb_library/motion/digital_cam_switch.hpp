@@ -30,6 +30,7 @@ struct MC_DigitalCamSwitch {
     std::uint32_t on = 0;  ///< not a pin: bit n - 1 = track n
 
     static constexpr std::string_view summary = "Switches outputs by the axis' position, like cams on its shaft.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), in_out<&Self::Switches>("", "list of cam switches"),
                          in_out<&Self::Outputs>("", "a point of the machine, or an axis for its drive's outputs"),

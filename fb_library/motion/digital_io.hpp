@@ -54,6 +54,7 @@ struct MC_ReadDigitalInput : EnableBlock<MC_ReadDigitalInput> {
     bool Value = false;
 
     static constexpr std::string_view summary = "Gives the level of a digital input of the machine or of a drive.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(in_out<&Self::Input>("", "a point of the machine, or an axis for its drive's inputs"), shared<&Self::Enable>(),
                          in<&Self::InputNumber>("", "which bit of them"), reading<Self>(), out<&Self::Value>("", "FALSE while not Valid"));
@@ -82,6 +83,7 @@ struct MC_ReadDigitalOutput : EnableBlock<MC_ReadDigitalOutput> {
     bool Value = false;
 
     static constexpr std::string_view summary = "Gives the level of a digital output of the machine or of a drive.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(in_out<&Self::Output>("", "a point of the machine, or an axis for its drive's outputs"), shared<&Self::Enable>(),
                          in<&Self::OutputNumber>("", "which bit of them"), reading<Self>(), out<&Self::Value>("", "FALSE while not Valid"));
@@ -114,6 +116,7 @@ struct MC_WriteDigitalOutput : SettingBlock<MC_WriteDigitalOutput> {
     [[nodiscard]] axes::WriteOutput setting() const noexcept { return {OutputNumber, Value}; }
 
     static constexpr std::string_view summary = "Writes a digital output of the machine or of a drive once.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(in_out<&Self::Output>("", "a point of the machine, or an axis for its drive's outputs"), shared<&Self::Execute>(),
                          in<&Self::OutputNumber>("", "which bit of them"), in<&Self::Value>("", "the level"),

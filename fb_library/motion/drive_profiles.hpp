@@ -24,6 +24,7 @@ struct Drive_MoveAbsolute : CommandBlock<Drive_MoveAbsolute> {
 
     static constexpr auto kind = axes::CommandKind::drive_move_absolute;
     static constexpr std::string_view summary = "Lets the drive move the axis to an absolute position by a profile of its own (PP).";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Position>("u", "target"),
                          in<&Self::Velocity>("u/s", "of the drive's profile, > 0; need not be reached"),
@@ -44,6 +45,7 @@ struct Drive_MoveRelative : CommandBlock<Drive_MoveRelative> {
 
     static constexpr auto kind = axes::CommandKind::drive_move_relative;
     static constexpr std::string_view summary = "Lets the drive move the axis by a distance, by a profile of its own (PP).";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::Distance>("u", "signed; from the actual position, buffered behind another one from its target"),
@@ -67,6 +69,7 @@ struct Drive_MoveVelocity : CommandBlock<Drive_MoveVelocity> {
     static constexpr bool Drive_MoveVelocity::*in_target_pin = &Drive_MoveVelocity::InVelocity;
     static constexpr std::string_view summary =
         "Lets the drive run the axis at a velocity by ramps of its own (PV) until something else takes it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::Velocity>("u/s", "signed; the sense times Direction; 0 is allowed"),
@@ -90,6 +93,7 @@ struct Drive_Torque : CommandBlock<Drive_Torque> {
     static constexpr bool Drive_Torque::*in_target_pin = &Drive_Torque::InTorque;
     static constexpr std::string_view summary =
         "Lets the drive exert a torque by a ramp of its own (PT) until something else takes the axis.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::Torque>("1", "fraction of the rated torque, signed; the sense times Direction"),

@@ -25,6 +25,7 @@ struct MC_MoveVelocity : CommandBlock<MC_MoveVelocity> {
     static constexpr auto kind = axes::CommandKind::move_velocity;
     static constexpr bool MC_MoveVelocity::*in_target_pin = &MC_MoveVelocity::InVelocity;
     static constexpr std::string_view summary = "Runs the axis at a velocity until something else takes it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::Velocity>("u/s", "signed; the sense times Direction; 0 is allowed"),
@@ -49,6 +50,7 @@ struct MC_MoveContinuousAbsolute : CommandBlock<MC_MoveContinuousAbsolute> {
     static constexpr bool MC_MoveContinuousAbsolute::*in_target_pin = &MC_MoveContinuousAbsolute::InEndVelocity;
     static constexpr std::string_view summary =
         "Moves the axis to an absolute position, arrives there with a velocity and goes on with it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),  //
                          in<&Self::Position>("u", "target"), in<&Self::EndVelocity>("u/s", "signed; at the target and after it"),
@@ -72,6 +74,7 @@ struct MC_MoveContinuousRelative : CommandBlock<MC_MoveContinuousRelative> {
     static constexpr auto kind = axes::CommandKind::move_continuous_relative;
     static constexpr bool MC_MoveContinuousRelative::*in_target_pin = &MC_MoveContinuousRelative::InEndVelocity;
     static constexpr std::string_view summary = "Moves the axis by a distance, arrives with a velocity and goes on with it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::Distance>("u", "signed; from the set position at the start"),

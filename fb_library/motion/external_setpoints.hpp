@@ -27,6 +27,7 @@ struct MC_ExtSetPointGenEnable : CommandBlock<MC_ExtSetPointGenEnable> {
     static constexpr auto kind = axes::CommandKind::external;
     static constexpr bool MC_ExtSetPointGenEnable::*in_target_pin = &MC_ExtSetPointGenEnable::Enabled;
     static constexpr std::string_view summary = "Lets the program give the axis' set-points.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), out<&Self::Enabled>("", "the axis is at the set-point that was fed"),
                          outcome<Self>());
@@ -47,6 +48,7 @@ struct MC_ExtSetPointGenFeed {
     SettingFollower answer{};
 
     static constexpr std::string_view summary = "Gives the axis its next set-point.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), in<&Self::Enable>("", "feeds in each call while TRUE"),
                          in<&Self::Position>("u", "set position"), in<&Self::Velocity>("u/s", "set velocity, signed"),
@@ -75,6 +77,7 @@ struct MC_ExtSetPointGenDisable : CommandBlock<MC_ExtSetPointGenDisable> {
 
     static constexpr auto kind = axes::CommandKind::halt;
     static constexpr std::string_view summary = "Ends the feeding of set-points and brings the axis to standstill.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::Deceleration, &Self::Jerk>(),
                          out<&Self::Done>("", "set velocity is zero"), outcome<Self>());

@@ -26,6 +26,7 @@ struct MC_GearIn : CommandBlock<MC_GearIn> {
     static constexpr auto kind = axes::CommandKind::gear_in;
     static constexpr bool MC_GearIn::*in_target_pin = &MC_GearIn::InGear;
     static constexpr std::string_view summary = "Couples the slave's velocity to the master's by a ratio.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Master, &Self::Slave, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::RatioNumerator>("", "slave's part of the ratio, signed; default 1"),
@@ -49,6 +50,7 @@ struct MC_GearOut : CommandBlock<MC_GearOut> {
 
     static constexpr auto kind = axes::CommandKind::gear_out;
     static constexpr std::string_view summary = "Releases the slave from its gear; it goes on with the velocity it has.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Slave, &Self::Execute>(), out<&Self::Done>("", "the slave is free"), outcome<Self>());
     }
@@ -72,6 +74,7 @@ struct MC_GearInPos : CommandBlock<MC_GearInPos> {
     static constexpr auto kind = axes::CommandKind::gear_in_pos;
     static constexpr bool MC_GearInPos::*in_target_pin = &MC_GearInPos::InSync;
     static constexpr std::string_view summary = "Couples the slave's position to the master's from a pair of positions on.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             shared<&Self::Master, &Self::Slave, &Self::Execute>(),

@@ -18,6 +18,7 @@ struct MC_Home : CommandBlock<MC_Home> {
 
     static constexpr auto kind = axes::CommandKind::home;
     static constexpr std::string_view summary = "Runs the axis' configured search for its reference.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Position>("u", "coordinate of the reference"),
                          shared<&Self::BufferMode>(), out<&Self::Done>("", "reference known and set, axis in Standstill"),

@@ -18,6 +18,7 @@ struct MC_HomeDirect : StepBlock<MC_HomeDirect> {
 
     static constexpr auto step = axes::HomingStep::direct;
     static constexpr std::string_view summary = "Homing without motion: where the axis stands becomes SetPosition.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::SetPosition>("u", "coordinate of the present position"),
                          shared<&Self::BufferMode>(), out<&Self::Done>("", "homed, in Standstill"), outcome<Self>());
@@ -34,6 +35,7 @@ struct MC_HomeAbsolute : StepBlock<MC_HomeAbsolute> {
 
     static constexpr auto step = axes::HomingStep::absolute;
     static constexpr std::string_view summary = "Homing without motion: the absolute encoder's zero is at homing.offset of the axis.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::BufferMode>(), out<&Self::Done>("", "homed, in Standstill"),
                          outcome<Self>());
@@ -51,6 +53,7 @@ struct MC_FinishHoming : StepBlock<MC_FinishHoming> {
 
     static constexpr auto step = axes::HomingStep::finish;
     static constexpr std::string_view summary = "Ends homing by steps: moves away if wanted, then the axis is homed and in Standstill.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Distance>("u", "relative move, such as off a switch; 0 = none"),
                          in<&Self::Velocity>("u/s", "of that move, > 0"), shared<&Self::Acceleration, &Self::Deceleration, &Self::Jerk>(),

@@ -22,6 +22,7 @@ struct MC_StepReferenceFlyingSwitch : StepBlock<MC_StepReferenceFlyingSwitch> {
 
     static constexpr auto step = axes::HomingStep::flying_switch;
     static constexpr std::string_view summary = "Passive homing: sets the coordinates when a switch is passed.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::SwitchMode>("", "what counts"),
                          in<&Self::ReferenceSignal>("", "the switch; by default the drive's"),
@@ -45,6 +46,7 @@ struct MC_StepReferenceFlyingRefPulse : StepBlock<MC_StepReferenceFlyingRefPulse
 
     static constexpr auto step = axes::HomingStep::flying_reference_pulse;
     static constexpr std::string_view summary = "Passive homing: sets the coordinates when the next zero mark is passed.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::ReferenceSignal>("", "the pulse; by default the encoder's index, latched by the drive"),
@@ -64,6 +66,7 @@ struct MC_AbortPassiveHoming : CommandBlock<MC_AbortPassiveHoming> {
 
     static constexpr auto kind = axes::CommandKind::abort_passive_homing;
     static constexpr std::string_view summary = "Cancels passive homing and nothing else.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), out<&Self::Done>("", "no passive homing waits any more"), outcome<Self>());
     }

@@ -25,6 +25,7 @@ struct MC_StepAbsoluteSwitch : StepBlock<MC_StepAbsoluteSwitch> {
 
     static constexpr auto step = axes::HomingStep::absolute_switch;
     static constexpr std::string_view summary = "Homing: searches a switch on the way; a limit switch turns the search once.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Direction>("", "where the search begins"),
                          in<&Self::SwitchMode>("", "what ends it"), in<&Self::ReferenceSignal>("", "the switch; by default the drive's"),
@@ -49,6 +50,7 @@ struct MC_StepLimitSwitch : StepBlock<MC_StepLimitSwitch> {
 
     static constexpr auto step = axes::HomingStep::limit_switch;
     static constexpr std::string_view summary = "Homing: searches the limit switch at one end.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Direction>("", "at which end the switch is"),
                          in<&Self::LimitSwitchMode>("", "what ends the search: mcOn, mcOff, mcRisingEdge or, coming back, mcFallingEdge"),
@@ -74,6 +76,7 @@ struct MC_StepBlock : StepBlock<MC_StepBlock> {
 
     static constexpr auto step = axes::HomingStep::block;
     static constexpr std::string_view summary = "Homing: drives against a fixed stop. The drive's torque is limited where it can be.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Direction>("", "where the stop is: positive or negative"),
                          detail::step_dynamics<Self>(), in<&Self::SetPosition>("u", "coordinate of the stop"),
@@ -102,6 +105,7 @@ struct MC_StepReferencePulse : StepBlock<MC_StepReferencePulse> {
 
     static constexpr auto step = axes::HomingStep::reference_pulse;
     static constexpr std::string_view summary = "Homing: searches the zero mark of the encoder.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Direction>("", "positive or negative"),
                          in<&Self::ReferenceSignal>("", "the pulse; by default the encoder's index, latched by the drive"),
@@ -126,6 +130,7 @@ struct MC_StepDistanceCoded : StepBlock<MC_StepDistanceCoded> {
     static constexpr auto step = axes::HomingStep::distance_coded;
     static constexpr std::string_view summary =
         "Homing: passes two marks of a distance-coded scale (homing.marks of the axis), which tell where it is.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Direction>("", "positive or negative"),
                          detail::step_dynamics<Self>(), detail::step_limits<Self>(), detail::step_end<Self>());

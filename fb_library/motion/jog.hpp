@@ -36,8 +36,8 @@ struct MC_Jog {
     } press{};
 
     static constexpr std::string_view summary = "Moves the axis by hand, as long as an input is TRUE.";
+    template <class Self>
     static consteval auto pins() {
-        using Self = MC_Jog;
         return pin_table(shared<&Self::Axis>(), in<&Self::JogForward>("", "moves in positive direction while TRUE; wins over JogBackwards"),
                          in<&Self::JogBackwards>("", "moves in negative direction while TRUE"),
                          in<&Self::Mode>("", "which speed, or inching; taken when pressed"),

@@ -24,6 +24,7 @@ struct MC_MoveAbsolute : CommandBlock<MC_MoveAbsolute> {
 
     static constexpr auto kind = axes::CommandKind::move_absolute;
     static constexpr std::string_view summary = "Moves the axis to an absolute position.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),  //
                          in<&Self::Position>("u", "target"), in<&Self::Velocity>("u/s", "largest velocity, > 0; need not be reached"),
@@ -45,6 +46,7 @@ struct MC_MoveRelative : CommandBlock<MC_MoveRelative> {
 
     static constexpr auto kind = axes::CommandKind::move_relative;
     static constexpr std::string_view summary = "Moves the axis by a distance from the set position at the start of the motion.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::Distance>("u", "signed; from the set position, not the actual one"),
@@ -67,6 +69,7 @@ struct MC_MoveAdditive : CommandBlock<MC_MoveAdditive> {
 
     static constexpr auto kind = axes::CommandKind::move_additive;
     static constexpr std::string_view summary = "Moves the axis by a distance from its last commanded target.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::Distance>("u", "signed; added to the last commanded position"),
@@ -90,6 +93,7 @@ struct MC_MoveModulo : CommandBlock<MC_MoveModulo> {
 
     static constexpr auto kind = axes::CommandKind::move_absolute;
     static constexpr std::string_view summary = "Moves a modulo axis to a position and any number of whole turns further.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::Position>("u", "place in the modulo, plus the modulo times the number of turns; >= 0"),

@@ -22,6 +22,7 @@ struct MC_SetOverride {
     SettingFollower factors{};
 
     static constexpr std::string_view summary = "Scales velocity, acceleration and jerk of everything the axis does.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), in<&Self::VelFactor>("1", "0 to 1; 0 stops without Standstill; default 1"),
                          in<&Self::AccFactor>("1", "above 0 to 1, on acceleration and deceleration; default 1"),

@@ -22,6 +22,7 @@ struct MC_ReadParameter : EnableBlock<MC_ReadParameter> {
     double Value = 0;
 
     static constexpr std::string_view summary = "Gives the value of a parameter of the axis in each call.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), in<&Self::ParameterNumber>("", "which one; another one at any time"),
                          reading<Self>(), out<&Self::Value>("as listed", "its value; BOOL as 0 or 1; 0 while not Valid"));
@@ -48,6 +49,7 @@ struct MC_ReadBoolParameter : EnableBlock<MC_ReadBoolParameter> {
     bool Value = false;
 
     static constexpr std::string_view summary = "Gives the value of a BOOL parameter of the axis in each call.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(),
                          in<&Self::ParameterNumber>("", "which one; invalid_parameter when it is no BOOL"), reading<Self>(),
@@ -79,6 +81,7 @@ struct MC_WriteParameter : SettingBlock<MC_WriteParameter> {
     [[nodiscard]] axes::WriteParameter setting() const noexcept { return {ParameterNumber, Value}; }
 
     static constexpr std::string_view summary = "Writes a parameter of the axis once. It holds until the runtime starts again.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::ParameterNumber>("", "which one"),
                          in<&Self::Value>("as listed", "its new value; 0 or 1 for a BOOL"), shared<&Self::ExecutionMode>(),
@@ -99,6 +102,7 @@ struct MC_WriteBoolParameter : SettingBlock<MC_WriteBoolParameter> {
     [[nodiscard]] axes::WriteParameter setting() const noexcept { return {ParameterNumber, Value ? 1.0 : 0.0}; }
 
     static constexpr std::string_view summary = "Writes a BOOL parameter of the axis once. It holds until the runtime starts again.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             shared<&Self::Axis, &Self::Execute>(), in<&Self::ParameterNumber>("", "which one; invalid_parameter when it is no BOOL"),

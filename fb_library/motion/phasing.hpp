@@ -36,6 +36,7 @@ struct MC_PhasingAbsolute : CommandBlock<MC_PhasingAbsolute> {
 
     static constexpr auto kind = axes::CommandKind::phasing_absolute;
     static constexpr std::string_view summary = "Shifts the master's position seen by the slave to an absolute value.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Master, &Self::Slave, &Self::Execute>(),
                          in<&Self::PhaseShift>("u of master", "the shift that results"),
@@ -64,6 +65,7 @@ struct MC_PhasingRelative : CommandBlock<MC_PhasingRelative> {
 
     static constexpr auto kind = axes::CommandKind::phasing_relative;
     static constexpr std::string_view summary = "Shifts the master's position seen by the slave by an additional value.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Master, &Self::Slave, &Self::Execute>(),
                          in<&Self::PhaseShift>("u of master", "added to the shift there is"),
@@ -90,6 +92,7 @@ struct MC_HaltPhasing : CommandBlock<MC_HaltPhasing> {
 
     static constexpr auto kind = axes::CommandKind::halt_phasing;
     static constexpr std::string_view summary = "Ends the phasing under way; the shift that is reached stays, and the coupling goes on.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Slave, &Self::Execute>(), in<&Self::Deceleration>("u/s2 of master", "0 = the axis' default"),
                          in<&Self::Jerk>("u/s3 of master", "0 = the axis' default"), out<&Self::Done>("", "the shift changes no more"),

@@ -31,8 +31,8 @@ struct MC_Power {
     AxisRef powered_axis{};  ///< axis of the last rising edge; not a pin
 
     static constexpr std::string_view summary = "Switches the axis' power stage and permits its directions.";
+    template <class Self>
     static consteval auto pins() {
-        using Self = MC_Power;
         return std::array{
             in_out<&Self::Axis>("", "axis acted on"),
             in<&Self::Enable>("", "power stage on while TRUE"),

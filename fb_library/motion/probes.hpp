@@ -28,6 +28,7 @@ struct MC_TouchProbe : CommandBlock<MC_TouchProbe> {
     }
 
     static constexpr std::string_view summary = "Records the axis' position at the first trigger event after the edge.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             shared<&Self::Axis>(), in_out<&Self::TriggerInput>("", "a probe or switch of the drive, or an input of the machine"),
@@ -62,6 +63,7 @@ struct MC_AbortTrigger : CommandBlock<MC_AbortTrigger> {
     [[nodiscard]] axes::ProbeDetails details() const noexcept { return {.trigger = TriggerInput, .replaces = 0}; }
 
     static constexpr std::string_view summary = "Ends the probing command that waits for a trigger.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), in_out<&Self::TriggerInput>("", "as at the MC_TouchProbe"), shared<&Self::Execute>(),
                          out<&Self::Done>("", "nobody waits for the trigger any more"), outcome<Self>());

@@ -19,6 +19,7 @@ struct MC_ReadStatus : EnableBlock<MC_ReadStatus> {
          ContinuousMotion = false, SynchronizedMotion = false;
 
     static constexpr std::string_view summary = "Gives the axis' state: exactly one of eight outputs is TRUE while Valid.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
                          out<&Self::ErrorStop>("", "stopped by an axis error; MC_Reset leads out"), out<&Self::Disabled>("", "power off"),
@@ -62,6 +63,7 @@ struct MC_ReadActualPosition : EnableBlock<MC_ReadActualPosition> {
     double Position = 0;
 
     static constexpr std::string_view summary = "Gives the axis' actual position.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
                          out<&Self::Position>("u", "actual position; 0 while not Valid"));
@@ -86,6 +88,7 @@ struct MC_ReadAxisError : EnableBlock<MC_ReadAxisError> {
     std::uint16_t AxisErrorID = 0;
 
     static constexpr std::string_view summary = "Gives the error that holds the axis in ErrorStop.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
                          out<&Self::AxisErrorID>("", "alarm id of the axis; 0 = none"));

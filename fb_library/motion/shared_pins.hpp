@@ -2,6 +2,7 @@
 // Pins that mean the same on every motion block, so that their unit and note stand once. A block still lists its own members, in the
 // standard's order:
 //
+//     template <class Self>
 //     static consteval auto pins() {
 //         return pin_table(shared<&Self::Axis, &Self::Execute>(), in<&Self::Position>("u", "target"),
 //                          shared<&Self::Deceleration, &Self::Jerk, &Self::BufferMode>(), out<&Self::Done>("", "standing"), outcome<Self>());
@@ -43,8 +44,9 @@ inline constexpr std::array shared_pins{
 
 template <auto M>
 consteval Pin shared_pin() {
+    Pin pin = detail::pin<M>({}, {}, {});
     for (const SharedPin& known : shared_pins)
-        if (known.name == member_name<M>()) return pin<M>(known.direction, known.unit, known.doc);
+        if (known.name == pin.name) return pin.direction = known.direction, pin.unit = known.unit, pin.doc = known.doc, pin;
     throw "no shared pin has this name";  // not a constant: the build stops here
 }
 

@@ -20,6 +20,7 @@ struct MC_Stop : CommandBlock<MC_Stop> {
 
     static constexpr auto kind = axes::CommandKind::stop;
     static constexpr std::string_view summary = "Stops the axis, ends whatever it does and locks it while Execute is TRUE.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(),  //
                          in<&Self::Execute>("", "a rising edge stops; the axis stays locked while TRUE"),
@@ -47,6 +48,7 @@ struct MC_Halt : CommandBlock<MC_Halt> {
 
     static constexpr auto kind = axes::CommandKind::halt;
     static constexpr std::string_view summary = "Brings the axis to standstill; any other command may take over meanwhile.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::Deceleration, &Self::Jerk, &Self::BufferMode>(),
                          out<&Self::Done>("", "set velocity is zero"), outcome<Self>());

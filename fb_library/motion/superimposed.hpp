@@ -22,6 +22,7 @@ struct MC_MoveSuperimposed : CommandBlock<MC_MoveSuperimposed> {
 
     static constexpr auto kind = axes::CommandKind::move_superimposed;
     static constexpr std::string_view summary = "Adds a distance to whatever the axis does, without interrupting it.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(), in<&Self::Distance>("u", "signed; added on top"),
                          in<&Self::VelocityDiff>("u/s", "largest velocity of the addition, > 0; need not be reached"),
@@ -52,6 +53,7 @@ struct MC_HaltSuperimposed : CommandBlock<MC_HaltSuperimposed> {
 
     static constexpr auto kind = axes::CommandKind::halt_superimposed;
     static constexpr std::string_view summary = "Ends every superimposed motion of the axis; what it lies upon goes on.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::Deceleration, &Self::Jerk>(),
                          out<&Self::Done>("", "the added velocity is zero"), outcome<Self>());

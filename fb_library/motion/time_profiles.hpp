@@ -24,6 +24,7 @@ struct MC_PositionProfile : CommandBlock<MC_PositionProfile> {
 
     static constexpr auto kind = axes::CommandKind::position_profile;
     static constexpr std::string_view summary = "Moves the axis along a table of positions over time.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             shared<&Self::Axis>(), in_out<&Self::TimePosition>("", "table of times and positions"),
@@ -49,6 +50,7 @@ struct MC_VelocityProfile : CommandBlock<MC_VelocityProfile> {
     static constexpr auto kind = axes::CommandKind::velocity_profile;
     static constexpr bool MC_VelocityProfile::*in_target_pin = &MC_VelocityProfile::ProfileCompleted;
     static constexpr std::string_view summary = "Runs the axis along a table of velocities over time and keeps the last one.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(
             shared<&Self::Axis>(), in_out<&Self::TimeVelocity>("", "table of times and velocities"),
@@ -75,6 +77,7 @@ struct MC_AccelerationProfile : CommandBlock<MC_AccelerationProfile> {
     static constexpr bool MC_AccelerationProfile::*in_target_pin = &MC_AccelerationProfile::ProfileCompleted;
     static constexpr std::string_view summary =
         "Runs the axis along a table of accelerations over time and keeps the velocity it has then.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), in_out<&Self::TimeAcceleration>("", "table of times and accelerations"),
                          shared<&Self::Execute, &Self::ContinuousUpdate>(),

@@ -22,6 +22,7 @@ struct MC_TorqueControl : CommandBlock<MC_TorqueControl> {
     static constexpr auto kind = axes::CommandKind::torque;
     static constexpr bool MC_TorqueControl::*in_target_pin = &MC_TorqueControl::InTorque;
     static constexpr std::string_view summary = "Exerts a torque or force until something else takes the axis.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute, &Self::ContinuousUpdate>(),
                          in<&Self::Torque>("1", "fraction of the rated torque, signed; the sense times Direction"),

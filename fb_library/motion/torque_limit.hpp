@@ -19,6 +19,7 @@ struct MC_SetTorqueLimit : CommandBlock<MC_SetTorqueLimit> {
 
     static constexpr auto kind = axes::CommandKind::set_torque_limit;
     static constexpr std::string_view summary = "Limits the torque of the drive in each direction.";
+    template <class Self>
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis, &Self::Execute>(),
                          in<&Self::PositiveLimit>("1", "fraction of the rated torque, 0.001 or more; 0 = as configured"),

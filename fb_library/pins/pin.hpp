@@ -1,10 +1,12 @@
 #pragma once
 // Pins of function blocks as data. A block writes its table once, from member pointers:
 //
+//     template <class Self>
 //     static consteval auto pins() { return std::array{in<&Self::PT>("", "delay time"), out<&Self::Q>("", "delayed IN")}; }
 //
 // Name, type, size and offset come from the member, so a name stands once. Everything here is a constant: no run time, no
-// allocation. (`pins()` is a function because the class is complete only inside function bodies; offsets need that.)
+// allocation. (`pins()` is a function because the class is complete only inside function bodies; offsets need that. It is a template so
+// that whoever calls a block does not pay the compiler for its table: whoever wants it says `pins_of<Block>`. A plain function will do.)
 
 #include <array>
 #include <cstddef>
@@ -94,16 +96,19 @@ struct MemberOf<T C::*> {
     using Type = T;
 };
 
-/// The last name in what the compiler calls this function: "... [with auto M = &ns::Block::Execute; ...]" (g++),
-/// "... [M = &ns::Block::Execute]" (clang++).
+/// The last name in what the compiler calls a function with a member for its argument: "... [with auto M = &ns::Block::Execute]" (g++),
+/// "... [M = &ns::Block::Execute]" (clang++). From the end and no template, since there are some two thousand pins.
+consteval std::string_view last_name(const char* signature, std::size_t size) {
+    std::size_t end = size;
+    while (end > 0 && (signature[end - 1] == ']' || signature[end - 1] == ')')) --end;
+    std::size_t begin = end;
+    while (begin > 0 && signature[begin - 1] != ':' && signature[begin - 1] != ' ') --begin;
+    if (begin < 2 || signature[begin - 1] != ':' || end == size) throw "unknown compiler spelling";
+    return {signature + begin, end - begin};
+}
 template <auto M>
-consteval std::string_view member_name() {
-    constexpr std::string_view text = __PRETTY_FUNCTION__;
-    constexpr auto begin = text.find("M = ");
-    constexpr auto end = text.find_first_of(";])", begin);
-    constexpr auto colons = text.substr(0, end).rfind("::");
-    static_assert(begin != std::string_view::npos && colons != std::string_view::npos, "unknown compiler spelling");
-    return text.substr(colons + 2, end - colons - 2);
+consteval auto member_name() {  // a type spelled out here would be explained in what is read
+    return last_name(__PRETTY_FUNCTION__, sizeof __PRETTY_FUNCTION__ - 1);
 }
 
 /// The name of T without namespaces and template arguments.
@@ -128,28 +133,30 @@ struct ShiftedSlots<T, N, 0> {
     T slots[N];
 };
 
+template <class C, class T, std::size_t Shift>
+union Overlay {
+    C object;
+    ShiftedSlots<T, sizeof(C) / sizeof(T) + 1, Shift> laid;
+    constexpr Overlay() : object{} {}
+};
+template <class C, class T, std::size_t Shift>
+inline constexpr Overlay<C, T, Shift> overlay{};
+
 /// offsetof for a member pointer, as a constant: the member is looked for among the slots of an array laid over the object.
-template <auto M, std::size_t Shift = 0>
-consteval std::size_t offset_of() {
-    using C = typename MemberOf<decltype(M)>::Class;
-    using T = typename MemberOf<decltype(M)>::Type;
-    union Overlay {
-        C object;
-        ShiftedSlots<T, sizeof(C) / sizeof(T) + 1, Shift> laid;
-        constexpr Overlay() : object{} {}
-    };
-    constexpr Overlay overlay{};
+template <std::size_t Shift = 0, class C, class T>
+consteval std::size_t offset_of(T C::*member) {
+    constexpr auto& laid = overlay<C, T, Shift>;
     for (std::size_t i = 0; i <= sizeof(C) / sizeof(T); ++i)
-        if (&overlay.laid.slots[i] == &(overlay.object.*M)) return Shift + i * sizeof(T);
+        if (&laid.laid.slots[i] == &(laid.object.*member)) return Shift + i * sizeof(T);
     // A handle of 6 bytes lies at a multiple of its alignment, not of 6.
-    if constexpr (Shift + alignof(T) < sizeof(T)) return offset_of<M, Shift + alignof(T)>();
+    if constexpr (Shift + alignof(T) < sizeof(T)) return offset_of<Shift + alignof(T)>(member);
     else throw "a pin lies nowhere";  // not a constant: the build stops here
 }
 
 template <auto M>
 consteval Pin pin(PinDirection direction, std::string_view unit, std::string_view doc) {
     using T = typename MemberOf<decltype(M)>::Type;
-    return {member_name<M>(), direction, PinTypeOf<T>::value, offset_of<M>(), sizeof(T), unit, doc};
+    return {member_name<M>(), direction, PinTypeOf<T>::value, offset_of(M), sizeof(T), unit, doc};
 }
 
 }  // namespace detail
@@ -187,6 +194,28 @@ consteval auto pin_table(const Pieces&... pieces) {
     (append(pieces), ...);
     return table;
 }
+
+namespace detail {
+template <class Block>
+consteval auto table_of() requires requires {
+    Block::template pins<Block>();
+}
+{ return Block::template pins<Block>(); }
+template <class Block>
+consteval auto table_of() requires requires {
+    Block::pins();
+}
+{ return Block::pins(); }
+}  // namespace detail
+
+template <class T>
+concept HasPins = requires {
+    detail::table_of<T>();
+};
+
+/// The table of a block.
+template <class Block>
+inline constexpr auto pins_of = detail::table_of<Block>();
 
 /// A block's name is its type's name, unless it says otherwise (`static constexpr std::string_view block_name`).
 template <class Block>

@@ -193,7 +193,7 @@ private:
         static_assert(!std::is_const_v<T>, "what is kept is written at the start: it cannot be const");
         if constexpr (detail::is_array<T>) {
             for (std::size_t i = 0; i < v.size(); ++i) keep(kind, std::string(name) + "[" + std::to_string(i) + "]", v[i], task);
-        } else if constexpr (requires { T::pins(); }) {
+        } else if constexpr (fb::HasPins<T>) {
             static constexpr fb::BlockType type = fb::block_type<T>();
             add_retained_block(kind, name, type, &v, task);
         } else {

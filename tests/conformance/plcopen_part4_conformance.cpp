@@ -11,7 +11,7 @@
 #include <set>
 #include <sstream>
 
-#include "fb_library/all_blocks.hpp"
+#include "fb_library/block_types.hpp"
 #include "fb_library/groups/part4.hpp"
 #include "tests/conformance/clauses.hpp"
 #include "tests/conformance/marks.hpp"
@@ -93,7 +93,7 @@ has compared it with the standard. A test that names a rule in a comment (`// G-
     out += fmt::format(
         "| blocks of v2.0 | offered | not offered | rules | shown by a test | not done |\n|---|---|---|---|---|---|\n| 68 | {} | {} | {} | "
         "{} | {} |\n",
-        std::count_if(fb::types_of<fb::GroupBlocks>.begin(), fb::types_of<fb::GroupBlocks>.end(),
+        std::count_if(fb::group_block_types().begin(), fb::group_block_types().end(),
                       [](const fb::BlockType& type) { return !type.name.starts_with("MC_GroupReadActual"); }),
         std::count_if(fb::not_offered.begin(), fb::not_offered.end(),
                       [](const fb::NotOffered& block) { return !block.block.starts_with("MC_GroupReadActual"); }),
@@ -101,8 +101,7 @@ has compared it with the standard. A test that names a rule in a comment (`// G-
     out +=
         "\n## Blocks that are offered\n\nEvery pin of v2.0, in its order and with its type. Of MC_GroupReadActual... those of v1.0.\n\n| "
         "block | pins | |\n|---|---|---|\n";
-    for (const auto& type : fb::types_of<fb::GroupBlocks>)
-        out += fmt::format("| {} | {} | {} |\n", type.name, type.pins.size(), type.summary);
+    for (const auto& type : fb::group_block_types()) out += fmt::format("| {} | {} | {} |\n", type.name, type.pins.size(), type.summary);
     out += "\n## Blocks that are not\n\n| block | why |\n|---|---|\n";
     for (const auto& block : fb::not_offered) out += fmt::format("| {} | {} |\n", block.block, block.reason);
     const auto tests_of = [&](int rule) {

@@ -41,7 +41,7 @@ std::map<std::string, std::vector<part1::StandardPin>> standard_blocks() {
 // P1-001, P1-002, P1-003, P1-004, P1-013, P1-098
 TEST(PinTables, HaveEveryPinOfPart1InItsOrderAndNoOther) {
     const auto standard = standard_blocks();
-    for (const BlockType& type : types_of<MotionBlocks>) {
+    for (const BlockType& type : motion_block_types()) {
         const auto found = standard.find(std::string{type.name});
         if (found == standard.end()) continue;  // not of Part 1
         const auto& expected = found->second;
@@ -113,7 +113,7 @@ TEST(PinTables, OfTheOtherMotionBlocksFollowTheirDocuments) {
 // Every block is of Part 1 or has its pins checked against another document.
 TEST(PinTables, EveryMotionBlockIsCheckedAgainstADocument) {
     const auto standard = standard_blocks();
-    for (const BlockType& type : types_of<MotionBlocks>) {
+    for (const BlockType& type : motion_block_types()) {
         const std::string name{type.name};
         EXPECT_TRUE(standard.contains(name) || other_documents().contains(name)) << name;
     }

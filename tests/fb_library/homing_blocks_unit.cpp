@@ -20,8 +20,8 @@ TEST(HomingPins, HaveEveryPinOfPart5AndNoOther) {
     std::map<std::string_view, std::vector<part1::StandardPin>> standard;
     for (const auto& pin : part5::pins) standard[pin.block].push_back(pin);
     EXPECT_EQ(standard.size(), 11u);
-    ASSERT_EQ(types_of<HomingBlocks>.size(), 11u);
-    for (const BlockType& type : types_of<HomingBlocks>) {
+    ASSERT_EQ(homing_block_types().size(), 11u);
+    for (const BlockType& type : homing_block_types()) {
         const auto& expected = standard[type.name];
         ASSERT_EQ(type.pins.size(), expected.size()) << type.name;
         for (std::size_t i = 0; i < expected.size(); ++i) {

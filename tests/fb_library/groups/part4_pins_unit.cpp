@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "fb_library/all_blocks.hpp"
 #include "fb_library/block_types.hpp"
 #include "fb_library/groups/part4.hpp"
 
@@ -59,7 +58,7 @@ bool same_type(const std::string& standard, std::string_view ours) {
 TEST(Part4Pins, EveryPinOfV2IsThereInItsOrderAndNoOther) {
     const auto standard = transcription(v2), old = transcription(v1);
     std::size_t compared = 0;
-    for (const BlockType& type : types_of<GroupBlocks>) {
+    for (const BlockType& type : group_block_types()) {
         const std::string name{type.name};
         const auto& from = renamed(name) ? old : standard;
         ASSERT_TRUE(from.contains(name)) << name;
@@ -93,7 +92,7 @@ TEST(Part4Pins, EveryBlockIsOfferedOrSaidNotToBe) {
 
 // G-002
 TEST(Part4Pins, EnumeratorsBeginWithMc) {
-    for (const BlockType& type : types_of<GroupBlocks>)
+    for (const BlockType& type : group_block_types())
         for (const Pin& pin : type.pins)
             for (const auto value : pin.type.values) EXPECT_TRUE(value.starts_with("mc")) << pin.type.name << ' ' << value;
 }

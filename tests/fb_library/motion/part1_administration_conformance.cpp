@@ -5,6 +5,7 @@
 #include <string>
 
 #include "fb_library/all_blocks.hpp"
+#include "fb_library/block_types.hpp"
 #include "tests/fb_library/motion/plc.hpp"
 
 namespace taktwerk::fb {
@@ -16,7 +17,7 @@ using axes::AxisState;
 // UINT for ErrorIDs, wider integers where the standard's are too small. Nothing else is a type of an elementary pin.
 TEST(BaseTypes, AreTheStandardsOrTheirSubstitutes) {
     const std::set<std::string_view> ours{"BOOL", "INT", "DINT", "UINT", "UDINT", "WORD", "DWORD", "LREAL", "TIME"};
-    for (const BlockType& type : types_of<AxisBlocks>)
+    for (const BlockType& type : axis_block_types())
         for (const Pin& pin : type.pins)
             if (pin.type.kind < PinKind::AXIS_REF) {
                 EXPECT_EQ(ours.count(pin.type.name), 1u) << type.name << '.' << pin.name << ' ' << pin.type.name;

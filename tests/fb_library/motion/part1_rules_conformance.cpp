@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fb_library/all_blocks.hpp"
+#include "fb_library/block_types.hpp"
 #include "tests/fb_library/motion/plc.hpp"
 
 namespace taktwerk::fb {
@@ -31,7 +32,7 @@ TEST(Part1Enumerators, AreTheStandards) {
     EXPECT_EQ(names(PinTypeOf<MC_StartMode>::value), (Names{"mcAbsolute", "mcRelative", "mcRampIn"}));
     EXPECT_EQ(names(PinTypeOf<MC_SyncMode>::value), (Names{"mcShortest", "mcCatchUp", "mcSlowDown"}));
     EXPECT_EQ(names(PinTypeOf<MC_CombineMode>::value), (Names{"mcAddAxes", "mcSubAxes"}));
-    for (const BlockType& type : types_of<MotionBlocks>)
+    for (const BlockType& type : motion_block_types())
         for (const Pin& pin : type.pins)
             for (const auto value : pin.type.values) EXPECT_EQ(value.substr(0, 2), "mc") << type.name << '.' << pin.name;
 }
