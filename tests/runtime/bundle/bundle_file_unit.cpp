@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 Result<BundleFile> open(const std::string& text, const Trust& trust) {
-    return BundleFile::read(std::make_unique<MemorySource>(text), "a.twb", trust);
+    return BundleFile::read(std::make_unique<BundleText>(text), "a.twb", trust);
 }
 
 /// Taken with every file of it, or the code of why not.

@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Result<Container> read(const std::string& text) { return read_container(MemorySource(text), "a.twb"); }
+Result<Container> read(const std::string& text) { return read_container(BundleText(text), "a.twb"); }
 
 std::string code_of(const std::string& text) {
     const auto container = read(text);

@@ -17,9 +17,9 @@
 
 namespace taktwerk::runtime {
 
-class MemorySource : public ByteSource {
+class BundleText : public ByteSource {
 public:
-    explicit MemorySource(std::string text) : text_(std::move(text)) {}
+    explicit BundleText(std::string text) : text_(std::move(text)) {}
     [[nodiscard]] std::uint64_t size() const override { return text_.size(); }
     [[nodiscard]] Result<void> read(std::uint64_t offset, std::span<std::byte> into) const override {
         if (offset > text_.size() || into.size() > text_.size() - offset) ADD_FAILURE() << "read behind the end";
