@@ -149,6 +149,7 @@ StrangeRuntime::Answer with_an_arm(std::function<json(int)> jogged, const std::s
                              {"tool_known", true},    {"tool_actual", {1, 2, 3, 0, 0, 0}},
                              {"unit", "mm"},          {"limiter", limiter},
                              {"limiting_axis", "j1"}, {"path_velocity", 50},
+                             {"override", 1},         {"operators_override", 1},
                              {"path_acceleration", 0}};
             return {{"state", {{"groups", {group}}}}};
         }
