@@ -1,4 +1,4 @@
-// Who brakes softly already is stopped harder by whoever wants that, and never softer: G-063, G-065.
+// Who brakes softly already is stopped harder by whoever wants that, and never softer.
 
 #include "tests/axes/group/group_rig.hpp"
 
@@ -31,6 +31,7 @@ struct Cruise {
     GroupRig rig;
 };
 
+// G-063, G-065
 TEST(GroupHarderStop, NeedsNoMoreOfTheWayBehindASoftHaltThanOutOfACruise) {
     // v2/2a + va/2j = 3.6 u, and what it goes until the planner has answered: 70 ms at most, by group-decisions.md.
     const double most = 3.6 + 50 * 0.07;

@@ -1,4 +1,4 @@
-// An override that is lowered while the next path is prepared already: that one does not begin faster than is wished now. G-070.
+// An override that is lowered while the next path is prepared already: that one does not begin faster than is wished now.
 
 #include "tests/axes/group/group_rig.hpp"
 
@@ -28,6 +28,7 @@ struct TwoLines {
     CommandId second = 0;
 };
 
+// G-070
 TEST(GroupLoweredOverride, HoldsFromTheBeginningOfWhatWaits) {
     for (const std::size_t served_every : {1, 20}) {
         for (const double factor : {0.1, 0.5}) {

@@ -1,4 +1,4 @@
-// How far a command is said to be, G-027: never back, also where a curve cuts its end off; and the velocity along the path is that of the tool's point.
+// How far a command is said to be: never back, also where a curve cuts its end off; and the velocity along the path is that of the tool's point.
 
 #include "tests/axes/group/group_rig.hpp"
 
@@ -10,6 +10,7 @@ struct CornerCase {
     double parameter;
 };
 
+// G-027
 TEST(GroupProgress, NeverGoesBackThroughRoundedCorners) {
     for (const auto& [mode, parameter] : {CornerCase{mcTMNone, 0}, CornerCase{mcTMCornerDistance, 3}, CornerCase{mcTMCornerDistance, 15},
                                           CornerCase{mcTMMaxCornerDeviation, 1}, CornerCase{mcTMStartVelocity, 1}}) {
