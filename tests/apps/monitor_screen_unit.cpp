@@ -218,7 +218,7 @@ TEST(MonitorScreen, AGroupSaysWhatItHasRefusedAndWhere) {
         {"command", "MC_MoveLinearAbsolute"},
         {"block", "cell.up"},
         {"where", "it enters the kept-free room 'post'; at X 45.000 Y 0.000 Z 12.500 mm (MCS); after 45.0 % of its way"}};
-    for (const std::size_t columns_there : {70u, 160u}) {
+    for (const std::size_t columns_there : {80u, 160u}) {
         const auto lines = monitor_screen(refused, layout, {columns_there, 60, false});
         EXPECT_THAT(lines, Contains(HasSubstr("refused MC_MoveLinearAbsolute cell.up: The path leaves")));
         EXPECT_THAT(lines, Contains(HasSubstr("where: it enters the kept-free room 'post'")));
@@ -228,6 +228,7 @@ TEST(MonitorScreen, AGroupSaysWhatItHasRefusedAndWhere) {
         for (const auto& line : lines) EXPECT_LE(columns(line), columns_there) << line;
     }
     EXPECT_THAT(monitor_screen(refused, layout, {110, 40, false}), Contains(HasSubstr("70.5 deg to go"))) << "of axes that turn";
+    refused["time_ns"] = 0;
     refused["events"] =
         Json::array({{{"axis", ""}, {"group", "arm"}, {"time_ns", 0}, {"times", 1}, {"english", "it was refused"}, {"remedy", "x"}}});
     EXPECT_THAT(monitor_screen(refused, layout, {110, 60, false}), Contains(HasSubstr("group arm: it was refused")));
