@@ -14,10 +14,12 @@ namespace {
 constexpr double halt_shares[] = {0.98, 0.955, 0.93, 0.905, 0.85, 0.74, 0.645, 0.56, 0.485, 0.42, 0.37, 0.32, 0.28, 0.24, 0.21};
 constexpr int patience = 4;  // borders from which a lowered velocity is not found, until it is looked for with less deceleration
 constexpr double softer = 0.6, softest = 0.1;
+constexpr int forbearance = 9;  // borders from which it is not, until it brakes as for a halt, to find a way from there
 constexpr double furthest_border = 0.25;  // s behind the first one
 /// Pieces are cut anew so long before the cycle comes to long ones: more than a plan takes, with its lead.
 constexpr double cut_before = 1.0;     // s
 constexpr double least_factor = 1e-6;  // what is slower stands
+constexpr double slow_to_obey = 0.25;  // s above what is wanted, besides twice what braking to it takes
 
 }  // namespace
 
@@ -37,13 +39,15 @@ int PathService::border(const StretchProgress& at, int tried) const {
     return static_cast<int>(i + 1 >= pieces.size() ? pieces.size() : i);
 }
 
-bool PathService::failed_before(const Failed& now) const noexcept {
-    return failed_.any && failed_.stand == now.stand && failed_.stretch == now.stretch && failed_.revision == now.revision &&
-           failed_.to == now.to && failed_.factor == now.factor;
+/// How often the same wish has failed; a path that has grown is no other wish.
+int PathService::failed_times(const Failed& now) const noexcept {
+    const bool same = failed_.any && failed_.stand == now.stand && failed_.stretch == now.stretch && failed_.revision == now.revision &&
+                      failed_.factor == now.factor;
+    return same ? failed_.times : 0;
 }
 
 PathAnswer PathService::nothing_found(const Failed& now, bool at_rest) noexcept {
-    const int times = failed_before(now) ? failed_.times + 1 : 1;
+    const int times = failed_times(now) + 1;
     failed_ = now;
     failed_.any = true;
     failed_.times = times;
@@ -80,9 +84,19 @@ bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthe
         if (!goes || !(task.to < furthest)) return false;
         ++tries_;
         planner_.plan(curve, limits_, task, plan_, former);
-        if (plan_.found && plan_.pieces.size() <= TimeStretch::most_pieces) return true;
+        if (found()) return true;
     }
     return false;
+}
+
+/// Who is told to go slower and finds no way down to that for long loses no more time: it brakes as for a halt. As soon as a way is found from there, it is taken; at
+/// rest it always is.
+bool PathService::brake_instead(const TimedCurve& curve, const RunTask& task, const RunShape* former) {
+    RunTask halt = task;
+    halt.softness = 1;
+    const double most = along_limits(curve.at(task.from, CurveSide::after), limits_, 1).velocity;
+    halt.velocity_factor = std::max(active_.factor, std::min(task.velocity / most, 1.0));
+    return plan_halt(curve, halt, active_.to, former);
 }
 
 /// What runs is what is wanted; before the cycle comes to its long pieces, the same motion in short ones takes its place.
@@ -110,7 +124,8 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     Failed now{.stand = stand, .stretch = active_.id, .revision = wish.revision};
     now.to = stand ? 0 : final_end;
     now.factor = stand ? 0 : std::min(wish.velocity_factor, 1.0);
-    const bool again = failed_before(now);
+    const int failures = failed_times(now);
+    const bool again = failures > 0 && failed_.to == now.to;
     const int begin = border(at, again ? failed_.border : -1);
     if (begin < 0) return PathAnswer::kept;
     now.border = begin;
@@ -144,16 +159,26 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     if (!(task.to > task.from + 1e-12 * std::fabs(task.to))) return PathAnswer::nothing_new;
     if (again && failed_.border >= begin) return PathAnswer::stuck;  // at rest, and it was tried
     // Where the path bends, braking as along a line may be too far from what can be; from a softer one there is a way in.
-    if (again && failed_.times > patience) task.softness = std::max(std::pow(softer, failed_.times - patience), softest);
+    if (failures > patience) task.softness = std::max(std::pow(softer, failures - patience), softest);
     ++tries_;
     planner_.plan(curve, limits_, task, plan_, former);
-    for (int i = 0; i < 8 && plan_.found && plan_.pieces.size() > TimeStretch::most_pieces; ++i) {
+    for (int i = 0; i < 8 && plan_.found && !found(); ++i) {
         task.to = task.from + (task.to - task.from) / 2;
         planner_.plan(curve, limits_, task, plan_, former);
     }
-    if (!plan_.found || plan_.pieces.size() > TimeStretch::most_pieces) return nothing_found(now, at_rest);
-    send(begin, task, false, wish.revision);
-    return PathAnswer::offered;
+    // A plan that stays above what is wanted is better than none only where there is no other.
+    const bool slow = plan_.above_for > 2 * plan_.braking_for + slow_to_obey, lowered = !at_rest && now.factor < active_.factor;
+    if (found() && !(slow && lowered)) {
+        send(begin, task, false, wish.revision);
+        return PathAnswer::offered;
+    }
+    if (lowered && failures > forbearance && brake_instead(curve, task, former)) {
+        task.to = plan_.shape.end;
+        task.velocity_factor = active_.factor;
+        send(begin, task, false, wish.revision);
+        return PathAnswer::offered;
+    }
+    return nothing_found(now, at_rest);
 }
 
 }  // namespace taktwerk::axes

@@ -67,16 +67,18 @@ private:
         bool any = false;
         bool stand = false;
         std::uint32_t stretch = 0, revision = 0;
-        int times = 0;   // one after the other
+        int times = 0;   // one after the other, of the same wish
         int border = 0;  // the furthest one tried
         double to = 0, factor = 1;
     };
 
     [[nodiscard]] int border(const StretchProgress& at, int tried) const;
-    [[nodiscard]] bool failed_before(const Failed& now) const noexcept;
+    [[nodiscard]] int failed_times(const Failed& now) const noexcept;
     PathAnswer nothing_found(const Failed& now, bool at_rest) noexcept;
     PathAnswer shorten(const TimedCurve& curve, std::size_t begin, const RunTask& task);
     bool plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former);
+    [[nodiscard]] bool found() const noexcept { return plan_.found && plan_.pieces.size() <= TimeStretch::most_pieces; }
+    [[nodiscard]] bool brake_instead(const TimedCurve& curve, const RunTask& task, const RunShape* former);
     void send(int at_piece, const RunTask& task, bool stands, std::uint32_t revision);
 
     std::vector<PathAxisLimits> limits_;

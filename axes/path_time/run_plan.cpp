@@ -413,6 +413,22 @@ bool RunPlanner::make_pieces(RunPlan& out) const {
     return cut_into_pieces(*curve_, task_.from, grid_.start.rest_length, grid_.end.rest_length, found, out);
 }
 
+/// What a search does not come to is left above a lowered velocity: until when?
+void RunPlanner::look_above(RunPlan& out) const {
+    constexpr double counts = 1.01 * 1.01;
+    out.above_for = out.braking_for = 0;
+    if (from_rest() || task_.velocity_factor >= 1 || task_.halt_share > 0) return;
+    out.braking_for = braking_to_factor(1, braking_share / task_.softness).duration();
+    double time = 0;
+    for (int i = 0; i < problem_.cells(); ++i) {
+        const auto c = static_cast<std::size_t>(i);
+        const double first = problem_.node(i, middles_), last = problem_.node(i + 1, middles_);
+        time += TimePiece::moving(grid_.nodes[c], grid_.nodes[c + 1] - grid_.nodes[c], first, middles_[c], last).duration;
+        const double wanted = task_.velocity_factor * check_.middle(c).path.velocity;
+        if ((first + 2 * middles_[c] + last) / 4 > counts * wanted * wanted) out.above_for = time;
+    }
+}
+
 bool RunPlanner::solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out) {
     const SpeedOutcome outcome = problem_.solve(middles_, range, guess, witness);
     out.steps += outcome.steps;
@@ -566,6 +582,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     out.cells = out.planned = problem_.cells();
     out.pieces.clear();
     out.found = out.found && make_pieces(out);
+    look_above(out);
 }
 
 /// The first cell of `former` that a further end has an influence on; 0 where there is none before it.
@@ -605,6 +622,7 @@ void RunPlanner::keep_before(std::size_t kept, const RunTask& task, const RunSha
     put(out.shape.squares, former.squares);
     put(out.shape.middles, former.middles);
     out.duration += time;
+    if (out.above_for > 0) out.above_for += time;
     out.cells = static_cast<int>(out.shape.middles.size());
 }
 

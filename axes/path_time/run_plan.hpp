@@ -36,6 +36,8 @@ struct RunPlan {
     int steps = 0;    ///< of the interior point method, all windows and rounds together
     int rounds = 0;   ///< of optimising and verifying
     int planned = 0;  ///< cells that were optimised; the others are those of the former plan
+    /// From a moving state to a lowered velocity factor: so long [s] it is above that by more than a hundredth, and what braking to it would take.
+    double above_for = 0, braking_for = 0;
 };
 
 class RunPlanner final : SpeedWitness {
@@ -75,6 +77,7 @@ private:
     void push_share(int cell);
     void split_cells();
     void slow_down(const LimitUse& use);
+    void look_above(RunPlan& out) const;
     /// False: it would last too long to be a motion.
     [[nodiscard]] bool make_pieces(RunPlan& out) const;
     [[nodiscard]] bool from_rest() const noexcept { return grid_.start.rest_length > 0; }

@@ -9,7 +9,7 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr int max_steps = 60;
-constexpr int steps_inside = 60, steps_inside_near = 10;  // until all bounds hold
+constexpr int steps_inside = 60, steps_inside_near = 30;  // until all bounds hold
 constexpr double to_the_boundary = 0.95;                  // of the way that a step may go towards it
 constexpr double inside_first = 10;                       // gap while a bound is relaxed: the goal counts a tenth of it
 constexpr double inside_near = 0.3;                       // the same where little is beyond a bound

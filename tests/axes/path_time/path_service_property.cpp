@@ -202,11 +202,11 @@ TEST(PathServiceProperty, FeedingOverrideHaltsAndLatePlansKeepEveryLimit) {
     EXPECT_GT(totals.slowed, 1000u);
 }
 
-// Programs that one of the campaigns failed on, and what it was: limits at the end of a path (798, 2400), an override that was not come to for seconds (129, 545), or
-// stood above by a hair (the others).
+// Programs that one of the campaigns failed on, and what it was: limits at the end of a path (798, 2400), an override that was not come to for seconds (129, 545, 62, 489: a
+// plan was found, and all of it was above), or stood above by a hair (the others).
 TEST(PathServiceProperty, ProgramsThatFailedOnce) {
     Feeding totals;
-    for (const std::uint64_t seed : {798, 2400, 129, 545, 35, 245, 315, 376, 567, 832, 1830}) {
+    for (const std::uint64_t seed : {798, 2400, 129, 545, 35, 245, 315, 376, 567, 832, 1830, 62, 489, 399, 1046}) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         FedProgram(seed, totals).run(true);
     }
