@@ -56,7 +56,7 @@ TEST(GroupStopWays, OutOfEveryStateAreNoLongerThanAskedFor) {
     std::mt19937_64 random(5);
     const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
     const auto decades = [&](double a, double b) { return std::exp(between(std::log(a), std::log(b))); };
-    constexpr double most_on_lines = 1.15, most_with_corners = 1.4;
+    constexpr double most_on_lines = 1.05, most_with_corners = 2;
     int stopped = 0;
     double worst_on_lines = 0, worst_with_corners = 0;
     for (std::size_t c = 0; c < property_cases(30); ++c) {
