@@ -8,6 +8,7 @@
 #include <span>
 
 #include "axes/path_time/curve.hpp"
+#include "core/math.hpp"
 
 namespace taktwerk::axes {
 
@@ -18,6 +19,12 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 struct AlongLimits {
     double velocity, acceleration, deceleration, jerk;
 };
+
+/// x^(2/3): v2 goes so with a jerk.
+[[nodiscard]] inline double two_thirds(double x) noexcept {
+    const double root = math::cbrt(x);
+    return root * root;
+}
 
 [[nodiscard]] inline AlongLimits along_limits(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits,
                                               double velocity_factor) noexcept {

@@ -129,7 +129,8 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     // A quadratic with this beginning has to stay positive over the first cell.
     if (!from_rest && start.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start.square / -start.slope);
     // Nor may it carry one who is below a lowered velocity far above it.
-    if (start.slope > 0 && task.velocity_factor < 1 && task.brake_way <= 0) sizes_.front() = std::min(sizes_.front(), 0.02 * start.square / start.slope);
+    if (start.slope > 0 && task.velocity_factor < 1 && task.brake_way <= 0)
+        sizes_.front() = std::min(sizes_.front(), 0.02 * start.square / start.slope);
     if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start.rest_length);
     sizes_.back() = std::min(sizes_.back(), growth * end.rest_length);
     add_nodes();

@@ -14,7 +14,7 @@ namespace {
 constexpr double halt_shares[] = {0.98, 0.955, 0.93, 0.905, 0.85, 0.74, 0.645, 0.56, 0.485, 0.42, 0.37, 0.32, 0.28, 0.24, 0.21};
 constexpr int patience = 4;  // borders from which a lowered velocity is not found, until it is looked for with less deceleration
 constexpr double softer = 0.6, softest = 0.1;
-constexpr int forbearance = 9;  // borders from which it is not, until it brakes as for a halt, to find a way from there
+constexpr int forbearance = 9;            // borders from which it is not, until it brakes as for a halt, to find a way from there
 constexpr double furthest_border = 0.25;  // s behind the first one
 /// Pieces are cut anew so long before the cycle comes to long ones: more than a plan takes, with its lead.
 constexpr double cut_before = 1.0;     // s

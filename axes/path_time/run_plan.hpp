@@ -57,6 +57,7 @@ private:
     void keep_before(std::size_t kept, const RunTask& task, const RunShape& former, RunPlan& out) const;
     void make_problem();
     void add_cell(int cell);
+    void measure_braking();
     void first_guess();
     void take_over(const RunShape& former);
     void brake();
