@@ -100,7 +100,7 @@ private:
     ErrorId enable() noexcept;
 
     void fire(GroupEvent event) noexcept;
-    void fail(std::uint16_t error) noexcept;
+    void fail(std::uint16_t error, std::uint8_t place = most_members) noexcept;
     void abort_all() noexcept;
     /// Where a member is to be now.
     [[nodiscard]] MotionState state_of(std::size_t place) const noexcept;

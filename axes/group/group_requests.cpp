@@ -389,6 +389,7 @@ ErrorId AxisGroup::change_members(const GroupSetting& setting) noexcept {
     run_.clear();
     members_.remove_all();
     view_.error = 0;
+    view_.error_place = most_members;
     fire(GroupEvent::disable);
     return ErrorId::none;
 }

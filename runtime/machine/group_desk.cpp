@@ -141,6 +141,7 @@ void GroupDesk::look_at(std::size_t group) noexcept {
     if (!view.interrupted && view.interrupting == 0) held_[group] = 0;  // a program went on, or gave it up
     seen.state = view.state;
     seen.error = view.error;
+    seen.error_axis = view.has(view.error_place) ? view.members[view.error_place] : axes::AxisRef{};
     seen.interrupted = view.interrupted;
     seen.held = held_[group] != 0;
     seen.resetting = view.resetting;

@@ -108,6 +108,7 @@ TEST(GroupMembers, AFaultOfOneEndsInGroupErrorStopAndTheOthersStayOnTheWay) {
     ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupErrorStop; }, 20));
     EXPECT_EQ(rig.axis(2).state, AxisState::ErrorStop);
     EXPECT_EQ(rig.view().error, rig.axis(2).error);
+    EXPECT_EQ(rig.view().error_place, 2) << "the third member's";
     EXPECT_EQ(rig.status(move.id), CommandStatus::error);
     EXPECT_EQ(rig.error_of(move.id), static_cast<ErrorId>(rig.axis(2).error));
     EXPECT_EQ(rig.error_of(waits.id), ErrorId::aborted_by_axis_error);
@@ -138,6 +139,7 @@ TEST(GroupMembers, AFaultOfOneEndsInGroupErrorStopAndTheOthersStayOnTheWay) {
     EXPECT_EQ(rig.groups.reset(GroupRig::ref, Owner::program), ErrorId::none);
     ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 5000));
     EXPECT_EQ(rig.view().error, 0);
+    EXPECT_EQ(rig.view().error_place, most_members);
 }
 
 // G-014: also without motion.
@@ -231,6 +233,18 @@ TEST(GroupMembers, ShuttingDownStopsOnTheWay) {
     ASSERT_TRUE(rig.until([&] { return rig.axis(0).state == AxisState::Disabled && rig.axis(1).state == AxisState::Disabled; }, 500));
     EXPECT_LE(rig.deviation({0, 0}, {60, 80}, from), 1e-9 * 100);
     EXPECT_EQ(rig.view().state, GroupStandby);
+}
+
+// What stops several at once is none of theirs: nobody is accused.
+TEST(GroupMembers, AnErrorOfSeveralNamesNone) {
+    GroupRig rig(3);
+    rig.enable();
+    (void)rig.give(line({60, 80, 20}, 90));
+    rig.run(400);
+    for (const std::size_t i : {0u, 2u}) rig.drives[i]->fault_code = 0x2310;
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupErrorStop; }, 20));
+    EXPECT_NE(rig.view().error, 0);
+    EXPECT_EQ(rig.view().error_place, most_members);
 }
 
 // What a configuration may say, each with its code.

@@ -258,4 +258,7 @@ export const refusals: Readonly<Record<string, string>> = {
     'limited to {} by the limit of the axis': '被轴的限值限制为 {}',
     'limited to {} by manual mode': '被手动模式限制为 {}',
     'limited to {} by setup mode': '被调试模式限制为 {}',
+    // Whose an error of a group is (hmi_bridge/state/whole_group.cpp). Last: other sentences have these words, too.
+    '{}, namely axis {}': '{}，即轴 {}',
+    '{} of axis {}': '轴 {1} 的 {0}',
 };
