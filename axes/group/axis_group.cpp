@@ -405,6 +405,8 @@ JointVector AxisGroup::here() const noexcept {
 void AxisGroup::publish() noexcept {
     view_.state = state_;
     view_.interrupted = interrupted_;
+    hand_.holds = hand_.holds && (interrupted_ || interrupting_ != 0);
+    view_.held = hand_.holds;
     view_.member_count = static_cast<std::uint8_t>(members_.count());
     view_.kinematics = has_all_joints(config_.kinematics.get(), members_);
     view_.members = members_.refs();

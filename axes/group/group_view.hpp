@@ -46,6 +46,7 @@ struct GroupView {
     bool resetting = false;
     ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
     bool interrupted = false;             ///< stands, and MC_GroupContinue goes on
+    bool held = false;                    ///< a person has interrupted it, or keeps it so: no MC_GroupContinue goes on
     bool kinematics = false;              ///< it has an arm, and all of its joints are members: frames other than ACS can be read
 
     std::uint8_t member_count = 0;

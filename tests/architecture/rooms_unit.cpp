@@ -26,7 +26,7 @@ const std::vector<Leave> large_classes{
 };
 
 const std::vector<Leave> long_headers{
-    {"axes/axis/error_texts.hpp", "", 384, "one table: a row for each error"},
+    {"axes/axis/error_texts.hpp", "", 387, "one table: a row for each error"},
 };
 
 const std::vector<SourceFile>& all_floors() {
