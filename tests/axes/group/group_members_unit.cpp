@@ -258,6 +258,8 @@ TEST(GroupConfig, SaysEveryProblem) {
     EXPECT_EQ(codes({{.name = "g", .members = {"x", "y"}}, {.name = "h", .members = {"z"}}}), "");
     EXPECT_EQ(codes({{.name = "", .members = {"x"}}}), "group.no_name ");
     EXPECT_EQ(codes({{.name = "g"}, {.name = "g"}}), "group.name_twice ");
+    EXPECT_EQ(codes({{.name = "z", .members = {"x"}}}), "group.name_twice ")
+        << "an axis is called so, and people command both by their names";
     EXPECT_EQ(codes({{.name = "g", .members = {"w"}}}), "group.unknown_axis ");
     EXPECT_EQ(codes({{.name = "g", .members = {"x"}}, {.name = "h", .members = {"x"}}}), "group.axis_twice ");
     EXPECT_EQ(codes({{.name = "g", .members = axes, .kinematics = cartesian_arm()}}), "group.kinematics ");
