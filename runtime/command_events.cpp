@@ -10,7 +10,7 @@ bool same(const CommandEvent& a, const CommandEvent& b) noexcept {
     const auto &p = a.place, &q = b.place;
     if (a.group != b.group || p.line != q.line || p.column != q.column || p.at.room != q.at.room || p.at.place != q.at.place) return false;
     return a.what == b.what && a.axis == b.axis && a.given == b.given && a.by == b.by && a.held == b.held && a.error == b.error &&
-           a.axis_error == b.axis_error;
+           a.axis_error == b.axis_error && a.error_axis == b.error_axis;
 }
 
 }  // namespace

@@ -43,9 +43,10 @@ struct CommandEvent {
     bool held = false;               ///< an MC_Stop of `by` holds the axis while its Execute is TRUE
     axes::AxisState state{};         ///< of the axis, then
     axes::ErrorId error = axes::ErrorId::none;
-    std::uint16_t axis_error = 0;  ///< alarm of the axis in ErrorStop; of a group what led it to GroupErrorStop
-    axes::PathPlace place{};       ///< of a group's: where in its text and on its path, and what stands there
-    std::uint32_t times = 1;       ///< since `at`
+    std::uint16_t axis_error = 0;                      ///< alarm of the axis in ErrorStop; of a group what led it to GroupErrorStop
+    std::uint16_t error_axis = axes::AxisRef{}.index;  ///< of a group's: whose `axis_error` that is
+    axes::PathPlace place{};                           ///< of a group's: where in its text and on its path, and what stands there
+    std::uint32_t times = 1;                           ///< since `at`
 };
 static_assert(std::is_trivially_copyable_v<CommandEvent>);
 

@@ -13,9 +13,10 @@ namespace taktwerk::runtime {
 
 struct SeenGroup {
     axes::GroupState state = axes::GroupState::GroupDisabled;
-    std::uint16_t error = 0;   ///< alarm id or ErrorId that led to GroupErrorStop, until it is reset; 0 = none
-    bool interrupted = false;  ///< stands, and MC_GroupContinue goes on
-    bool held = false;         ///< ... and it was a person who interrupted it
+    std::uint16_t error = 0;     ///< alarm id or ErrorId that led to GroupErrorStop, until it is reset; 0 = none
+    axes::AxisRef error_axis{};  ///< whose error that is, or which member left; invalid: nobody's alone
+    bool interrupted = false;    ///< stands, and MC_GroupContinue goes on
+    bool held = false;           ///< ... and it was a person who interrupted it
     bool resetting = false, powered = false, online = false, in_position = false;
 
     std::array<axes::AxisRef, axes::most_members> members{};  ///< by place; invalid: none

@@ -409,6 +409,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"undescribed", undescribed_json(binding.profile.get())}});
     }
     if (!config.axis_groups.empty()) out["axis_groups"] = axis_groups_json(config);
+    if (!config.paths.empty()) out["paths"] = paths_json(config);
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
     out["hazards"] = hazards_json(config);
@@ -468,7 +469,7 @@ int check(const CheckOptions& options) {
     print_clocks(config);
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);
-    print_axis_groups(config);
+    fmt::print("{}{}", axis_groups_text(config), paths_text(config));
     print_programs(config, layout);
     print_recording(config, checked.machine->signals());
     if (config.emergency_stop.input.empty())

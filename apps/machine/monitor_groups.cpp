@@ -42,8 +42,10 @@ private:
     [[nodiscard]] std::string text(const char* key) const { return group_.at(key).get<std::string>(); }
     [[nodiscard]] double number(const char* key) const { return hmi::number_of(group_.at(key)); }
     [[nodiscard]] bool flag(const char* key) const { return group_.at(key).get<bool>(); }
-    /// Of a path of turning axes: degrees.
+    /// Of a way of one axis: its own.
     [[nodiscard]] std::string path_unit() const { return group_.value("path_unit", text("unit")); }
+    /// Its measure is the norm of what several axes go: no length, and what is left of it says nothing to anybody. Its share does.
+    [[nodiscard]] bool of_axes() const { return path_unit() == "u" && text("unit") != "u"; }
     [[nodiscard]] bool tool_known() const { return flag("tool_known"); }
     [[nodiscard]] std::string paint(const char* code, const std::string& what) const {
         return size_.colours ? fmt::format("\033[{}m{}\033[0m", code, what) : what;
@@ -60,7 +62,8 @@ private:
         out += flag("powered") ? "on" : " -";
         if (flag("interrupted")) out += flag("held") ? "   INTERRUPTED by a person" : "   interrupted by its program";
         if (state != "GroupMoving" && state != "GroupStopping") return out;
-        return out + fmt::format("   {:.1f} {}/s{}", number("path_velocity"), path_unit(), limited());
+        return out +
+               fmt::format("   {:.1f} {}/s{}{}", number("path_velocity"), path_unit(), of_axes() ? " of its axes together" : "", limited());
     }
 
     [[nodiscard]] std::string limited() const {
@@ -106,7 +109,8 @@ private:
         if (const auto command = text("command"); !command.empty()) {
             const auto block = text("block");
             out = fmt::format("{}{}{}  {:.0f} %", command, block.empty() ? "" : " ", block, 100 * number("progress"));
-            if (const double to_go = number("distance_to_go"); to_go > 0) out += fmt::format(", {:.1f} {} to go", to_go, path_unit());
+            if (const double to_go = number("distance_to_go"); to_go > 0 && !of_axes())
+                out += fmt::format(", {:.1f} {} to go", to_go, path_unit());
             if (const double left = number("remaining_s"); left > 0) out += fmt::format(", {:.1f} s", left);
         }
         if (const int queued = group_.at("queued").get<int>(); queued > 0) out += fmt::format("{}{} wait", out.empty() ? "" : ", ", queued);
@@ -139,7 +143,8 @@ private:
         if (text("state") != "GroupErrorStop" && group_.at("error").get<int>() == 0) return;
         const auto name = group_.value("error_name", std::string("error ") + std::to_string(group_.at("error").get<int>()));
         const auto words = group_.value("error_text", std::string{});
-        out.push_back(paint(red, cut(fmt::format("   {}{}{}", name, words.empty() ? "" : ": ", words), size_.columns)));
+        const auto said = words.empty() ? name : words.starts_with(name) ? words : fmt::format("{}: {}", name, words);
+        out.push_back(paint(red, cut("   " + said, size_.columns)));
         if (const auto cause = group_.value("error_cause", std::string{}); !cause.empty())
             out.push_back(cut("   why: " + cause, size_.columns));
         if (const auto remedy = group_.value("error_remedy", std::string{}); !remedy.empty())

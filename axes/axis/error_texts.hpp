@@ -378,6 +378,9 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"The tool is too far from its path", "The members' following errors together put the tool's point further from its set-point than the group's `following_error` allows; the group has come to rest on its path",
       "Look which member lags and why (load, brake, tuning, limits); slow the path down or widen the window"},
      {"工具偏离路径过大", "各成员轴的跟随误差合起来使工具点与设定点的距离超过轴组 `following_error` 的允许值；轴组已在路径上停止", "检查哪个成员轴滞后及其原因（负载、制动器、整定、限制）；降低路径速度或放宽窗口"}},
+    {ErrorId::held_by_person, "held_by_person",
+     {"A person has interrupted the group", "It was interrupted at a panel, and MC_GroupContinue of a program does not go on behind that", "Let a person go on (`taktwerk group continue`, or the page), then the commands go on; or give the motion command again"},
+     {"轴组被人员中断", "轴组是在操作面板上被中断的，程序的 MC_GroupContinue 不能使其继续", "由人员继续（`taktwerk group continue` 或页面），命令随即继续；或重新发出运动命令"}},
 }};
 // clang-format on
 

@@ -67,9 +67,10 @@ void AxisGroup::leave(GroupEvent event) noexcept {
     fire(event);
 }
 
-void AxisGroup::fail(std::uint16_t error) noexcept {
+void AxisGroup::fail(std::uint16_t error, std::uint8_t place) noexcept {
     if (!next_state(state_, GroupEvent::error) || state_ == GroupState::GroupErrorStop) return;
     view_.error = error;
+    view_.error_place = place;
     view_.reset_error = ErrorId::none;
     if (state_ == GroupState::GroupHoming) homing_.stop(members_);
     fire(GroupEvent::error);
@@ -89,9 +90,9 @@ void AxisGroup::fail(std::uint16_t error) noexcept {
 void AxisGroup::update(Instant) noexcept {
     const auto loss = members_.lost();
     if (state_ != GroupState::GroupDisabled && state_ != GroupState::GroupErrorStop) {
-        const std::uint16_t error = loss.error != 0 ? loss.error : members_.error_of_any();
-        if (error != 0) fail(error);
-        else if (loss.any) fail(static_cast<std::uint16_t>(ErrorId::member_left));
+        const auto failed = loss.error != 0 ? loss : members_.error_of_any();
+        if (failed.error != 0) fail(failed.error, failed.place);
+        else if (loss.any) fail(static_cast<std::uint16_t>(ErrorId::member_left), loss.place);
     }
     // All at once (an emergency stop, a lost bus): nobody is left whom it could bring to rest, and what it was about must not be there when they come back.
     if (loss.any && !members_.led()) {
@@ -153,6 +154,7 @@ void AxisGroup::watch_reset() noexcept {
     view_.reset_error = failed;
     if (failed != ErrorId::none) return;
     view_.error = 0;
+    view_.error_place = most_members;
     fire(GroupEvent::reset);
 }
 
@@ -363,11 +365,9 @@ void AxisGroup::go_on(Duration period) noexcept {
     tend_jog(period);
     if (tracking_.active()) go_with_frame(period);
     if (!members_.led()) return;
-    const auto error = members_.lead([&](std::size_t place) { return state_of(place); });
-    if (error != ErrorId::none || run_.fault() != ErrorId::none) {
-        fail(static_cast<std::uint16_t>(error != ErrorId::none ? error : run_.fault()));
-        return;
-    }
+    const auto led = members_.lead([&](std::size_t place) { return state_of(place); });
+    if (led.error != ErrorId::none || run_.fault() != ErrorId::none)
+        return fail(static_cast<std::uint16_t>(led.error != ErrorId::none ? led.error : run_.fault()), led.place);
     if (!begun_ || !queue_.has_active()) return;
     if (queue_.active().command.kind == GroupCommandKind::path) return walk_path(period);
     // The set-point has gone over to the way of a later command (G-061).
@@ -405,6 +405,8 @@ JointVector AxisGroup::here() const noexcept {
 void AxisGroup::publish() noexcept {
     view_.state = state_;
     view_.interrupted = interrupted_;
+    hand_.holds = hand_.holds && (interrupted_ || interrupting_ != 0);
+    view_.held = hand_.holds;
     view_.member_count = static_cast<std::uint8_t>(members_.count());
     view_.kinematics = has_all_joints(config_.kinematics.get(), members_);
     view_.members = members_.refs();

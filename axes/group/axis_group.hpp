@@ -49,8 +49,10 @@ public:
     void service() { run_.service(); }
 
     // --- the machine's hand ----------------------------------------------------------------------------------------------
-    /// As MC_GroupHalt, whoever commands it.
+    /// As MC_GroupHalt, whoever commands it. What is interrupted, and stands, ends likewise.
     void halt() noexcept;
+    /// While it is interrupted, or comes to that: a person wants it so, and no MC_GroupContinue goes on (held_by_person). Ends with the interruption.
+    void hold(bool holds) noexcept;
     /// Whoever commanded it is gone: halts, forgets what was interrupted or waits, gives up the lock of a stop.
     void let_go() noexcept;
     /// For a member that it leads: halts on the path, and shuts that axis down when it stands (Axis::shut_down).
@@ -100,7 +102,7 @@ private:
     ErrorId enable() noexcept;
 
     void fire(GroupEvent event) noexcept;
-    void fail(std::uint16_t error) noexcept;
+    void fail(std::uint16_t error, std::uint8_t place = most_members) noexcept;
     void abort_all() noexcept;
     /// Where a member is to be now.
     [[nodiscard]] MotionState state_of(std::size_t place) const noexcept;
@@ -169,6 +171,7 @@ private:
     struct {
         double override_factor = 1;
         bool setup = false;  // the machine's mode
+        bool holds = false;  // GroupView::held
     } hand_;
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
     CommandId sent_ = 0;  // the last one that the planner has

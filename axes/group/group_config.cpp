@@ -50,6 +50,9 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
         if (group.name.empty()) problem("no_name", "the group has no name", "give it one: programs find it by that");
         else if (!names.insert(group.name).second)
             problem("name_twice", "another group is called '" + group.name + "'", "give each group a name of its own");
+        else if (std::find(known.begin(), known.end(), group.name) != known.end())
+            problem("name_twice", "an axis is called '" + group.name + "', too",
+                    "give the group a name of its own: people command both by their names");
         if (group.members.size() > most_moved_members)
             problem_in(".members", "too_many_members",
                        "it has " + std::to_string(group.members.size()) + " members, and a path moves " +

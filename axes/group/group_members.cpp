@@ -78,15 +78,22 @@ GroupMembers::Loss GroupMembers::lost() noexcept {
         const auto& view = axis(i).view();
         if (view.active == joined_[i]) continue;
         joined_[i] = 0;
-        if (!loss.any) loss = {true, view.state == AxisState::ErrorStop ? view.error : std::uint16_t{0}};
+        const Loss own{true, view.state == AxisState::ErrorStop ? view.error : std::uint16_t{0}, static_cast<std::uint8_t>(i)};
+        if (!loss.any) loss = own;
+        else if (own.error == loss.error) loss.place = most_members;  // what stops several at once (an emergency stop) is none of theirs
     }
     return loss;
 }
 
-std::uint16_t GroupMembers::error_of_any() const noexcept {
-    for (std::size_t i = 0; i < most_members; ++i)
-        if (has(i) && axis(i).view().state == AxisState::ErrorStop) return std::max(axis(i).view().error, std::uint16_t{1});
-    return 0;
+GroupMembers::Loss GroupMembers::error_of_any() const noexcept {
+    Loss first;
+    for (std::size_t i = 0; i < most_members; ++i) {
+        if (!has(i) || axis(i).view().state != AxisState::ErrorStop) continue;
+        const auto error = std::max(axis(i).view().error, std::uint16_t{1});
+        if (first.error == 0) first = {false, error, static_cast<std::uint8_t>(i)};
+        else if (error == first.error) first.place = most_members;
+    }
+    return first;
 }
 
 JointVector GroupMembers::set_positions() const noexcept {

@@ -34,17 +34,21 @@ public:
     [[nodiscard]] bool owned_by_other(Owner owner) const noexcept;
     /// All or none.
     ErrorId join(const void* instance, Owner owner) noexcept;
+    struct Refused {
+        ErrorId error = ErrorId::none;
+        std::uint8_t place = most_members;  ///< whose; most_members: nobody's
+    };
     /// A set-point for each that follows; `of(place)` says it. The first that cannot follow it: its error.
     template <class Of>
-    ErrorId lead(const Of& of) noexcept {
-        ErrorId first = ErrorId::none;
+    Refused lead(const Of& of) noexcept {
+        Refused first;
         for (std::size_t i = 0; i < most_members; ++i) {
             if (joined_[i] == 0) continue;
             const MotionState next = of(i);
             const auto error = axis(i).lead({next.position, next.velocity, next.acceleration});
             if (error == ErrorId::none) continue;
             joined_[i] = 0;
-            if (first == ErrorId::none) first = error;
+            if (first.error == ErrorId::none) first = {error, static_cast<std::uint8_t>(i)};
         }
         return first;
     }
@@ -56,11 +60,13 @@ public:
 
     struct Loss {
         bool any = false;
-        std::uint16_t error = 0;  ///< the axis' own; 0: it has none
+        std::uint16_t error = 0;            ///< the axis' own; 0: it has none
+        std::uint8_t place = most_members;  ///< whose; most_members: nobody's
     };
     /// Of those that followed one does not any more; it is forgotten.
     [[nodiscard]] Loss lost() noexcept;
-    [[nodiscard]] std::uint16_t error_of_any() const noexcept;
+    /// The first that is in ErrorStop, whether it followed or not; error 0: none is.
+    [[nodiscard]] Loss error_of_any() const noexcept;
 
     [[nodiscard]] JointVector set_positions() const noexcept;
 

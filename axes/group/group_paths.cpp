@@ -13,6 +13,11 @@ void ask(PathView& shown, const PathNote& note) noexcept {
     ++shown.request_id;
 }
 
+void nothing_carried_out(PathView& shown) noexcept {
+    shown.line = 0;
+    shown.number = PathView::no_block_number;
+}
+
 }  // namespace
 
 void AxisGroup::walk_path(Duration period) noexcept {
@@ -27,8 +32,12 @@ void AxisGroup::walk_path(Duration period) noexcept {
     const bool goes = interrupting_ == 0;
     while (const PathNote* note = run_.note()) {
         if (!serve(*note, goes ? period : Duration{})) return;
-        if (note->kind == PathNote::Kind::end) return queue_.finish_active(Outcome::done);
+        if (note->kind == PathNote::Kind::end) {
+            nothing_carried_out(shown);
+            return queue_.finish_active(Outcome::done);
+        }
         if (note->kind == PathNote::Kind::fault) {
+            nothing_carried_out(shown);
             refused(active, note->place);
             return queue_.finish_active(Outcome::error, note->place.error);
         }
@@ -38,6 +47,7 @@ void AxisGroup::walk_path(Duration period) noexcept {
     }
     if (run_.stuck() != ErrorId::none && run_.over()) {
         shown.place = {.error = run_.stuck(), .line = shown.line};
+        nothing_carried_out(shown);
         refused(active, shown.place);
         return queue_.finish_active(Outcome::error, run_.stuck());
     }
@@ -81,10 +91,13 @@ ErrorId AxisGroup::acknowledge(std::uint32_t request, Owner owner) noexcept {
     return ErrorId::none;
 }
 
-/// Nobody goes the path any more.
+/// Nobody goes the path any more. What ended it on its way, and has no fault of the text to name, did so at this line.
 void AxisGroup::forget_path() noexcept {
     path_ = {};
     view_.path.waits = false;
+    if (view_.path.line == 0) return;
+    if (view_.path.place.error == ErrorId::none) view_.path.place.line = view_.path.line;
+    nothing_carried_out(view_.path);
 }
 
 void AxisGroup::selected(PathRef path) noexcept {
@@ -117,7 +130,7 @@ ErrorId AxisGroup::refuse_driven(const GroupCommand& command) const noexcept {
 }
 
 bool AxisGroup::watch_driven() noexcept {
-    if (run_.driver().axis.valid()) {
+    if (run_.driver().axis.valid() && queue_.has_active()) {
         view_.path.line = run_.line();
         view_.path.number = run_.number();
     }

@@ -67,7 +67,8 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
     if (kind == GroupCommandKind::home) return state_ == GroupStandby ? ErrorId::none : ErrorId::state_forbids;
     if ((jogs() || is_driven()) && has_place_in_queue(kind) && waits(command)) return ErrorId::state_forbids;  // G-090
     if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
-    if (kind == GroupCommandKind::resume) return interrupted_ ? ErrorId::none : ErrorId::nothing_interrupted;
+    if (kind == GroupCommandKind::resume)
+        return !interrupted_ ? ErrorId::nothing_interrupted : hand_.holds ? ErrorId::held_by_person : ErrorId::none;
     return interrupting_ != 0 && !waits(command) ? ErrorId::state_forbids : ErrorId::none;
 }
 
@@ -283,15 +284,26 @@ CommandId AxisGroup::take_disable() noexcept {
     return id;
 }
 
+void AxisGroup::hold(bool holds) noexcept {
+    hand_.holds = holds;
+    publish();
+}
+
 void AxisGroup::halt() noexcept {
+    if (interrupted_ && !members_.led() && state_ == GroupState::GroupStandby) {  // whoever stops it does not want it to go on
+        abort_all();
+        return publish();
+    }
     if (!members_.led() || (state_ != GroupState::GroupMoving && state_ != GroupState::GroupStopping)) return;
-    const bool stops = state_ == GroupState::GroupStopping || interrupting_ != 0 || disabling_ != 0 || going_off_ != 0 ||
-                       queue_.active().command.kind == GroupCommandKind::halt;
+    const auto owner = queue_.active().owner;
+    if (interrupting_ != 0) abort_all();  // it brakes already, and nobody goes on
+    const bool stops =
+        state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0 || queue_.active().command.kind == GroupCommandKind::halt;
     // A program may stop as softly as it likes; who stops the machine does not wait for that.
     if (stops) return run_.stop({}, Override{});
     GroupCommand command;
     command.kind = GroupCommandKind::halt;
-    (void)take_motion(command, queue_.active().owner);
+    (void)take_motion(command, owner);
     publish();
 }
 
@@ -389,6 +401,7 @@ ErrorId AxisGroup::change_members(const GroupSetting& setting) noexcept {
     run_.clear();
     members_.remove_all();
     view_.error = 0;
+    view_.error_place = most_members;
     fire(GroupEvent::disable);
     return ErrorId::none;
 }

@@ -41,10 +41,12 @@ struct GroupView {
     static constexpr std::size_t most_waiting = 16, most_slaves = 4;
 
     GroupState state = GroupState::GroupDisabled;
-    std::uint16_t error = 0;  ///< alarm id or ErrorId that leads or led to GroupErrorStop, until it is reset; 0 = none
+    std::uint16_t error = 0;                  ///< alarm id or ErrorId that leads or led to GroupErrorStop, until it is reset; 0 = none
+    std::uint8_t error_place = most_members;  ///< whose error that is, or which member left; most_members: nobody's alone
     bool resetting = false;
     ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
     bool interrupted = false;             ///< stands, and MC_GroupContinue goes on
+    bool held = false;                    ///< a person has interrupted it, or keeps it so: no MC_GroupContinue goes on
     bool kinematics = false;              ///< it has an arm, and all of its joints are members: frames other than ACS can be read
 
     std::uint8_t member_count = 0;

@@ -86,12 +86,12 @@ struct PathState {
 /// Of the path that a group is on, or was on last.
 struct PathView {
     PathRef path{};
-    std::uint32_t line = 0;        ///< of the text: what the set-point carries out; 0: nothing yet
+    std::uint32_t line = 0;        ///< of the text: what the set-point carries out; 0: nothing
     std::uint32_t number = 0;      ///< its N word; no_block_number: none
     std::uint32_t request_id = 0;  ///< counts requests, from 1 in each group
     bool waits = false;            ///< the request wants to be acknowledged
     PathRequest request{};         ///< the last one
-    PathPlace place{};             ///< why the last path ended with an error
+    PathPlace place{};             ///< why the last path ended with an error; of a stop, or the group's error, the line alone
 
     static constexpr std::uint32_t no_block_number = 0xFFFF'FFFF;
 };

@@ -105,13 +105,14 @@ struct Path_Handshake : GroupReadBlock<Path_Handshake> {
     static consteval auto pins() {
         return pin_table(grouped<&Self::AxesGroup, &Self::Enable>(),
                          in<&Self::Acknowledge>("", "a rising edge while Waits: it is done, the path goes on"), reading<Self>(),
-                         out<&Self::Line>("", "of the text, that is carried out; 0: none"), out<&Self::Block>("", "its N word; 0: none"),
-                         out<&Self::Waits>("", "the path stands until Acknowledge rises"),
+                         out<&Self::Line>("", "of the text, that is carried out; 0: none, or none any more"),
+                         out<&Self::Block>("", "its N word; 0: none"), out<&Self::Waits>("", "the path stands until Acknowledge rises"),
                          out<&Self::Request>("", "what is asked for, last"), out<&Self::RequestID>("", "counts requests"),
                          out<&Self::Number>("", "of a tool, of M100 to M199"), out<&Self::Value>("1", "spindle: 1/min; M100 to M199: P"),
                          out<&Self::Second>("1", "M100 to M199: Q"),
-                         out<&Self::FaultLine>("", "of the text, of what ended or refused the path; 0: nothing did"),
-                         out<&Self::FaultColumn>("", "bytes from 1; 0: the line as a whole"), out<&Self::FaultID>("", "why"));
+                         out<&Self::FaultLine>("", "of the text, where the path ended too early, or what refused it; 0: nothing did"),
+                         out<&Self::FaultColumn>("", "bytes from 1; 0: the line as a whole"),
+                         out<&Self::FaultID>("", "why; 0: another command, a stop, the group's error"));
     }
 
     /// More than its group: it answers.

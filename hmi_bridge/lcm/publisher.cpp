@@ -314,12 +314,14 @@ void Publisher::Impl::send_events(const runtime::Snapshot& s, bool repeated) {
         m.time_ns = count(event.at);
         m.times = static_cast<std::int32_t>(std::min<std::uint32_t>(event.times, INT32_MAX));
         m.event = word(event.what);
-        m.axis = event.axis < layout.axes.size() ? layout.axes[event.axis].name : std::string{};
-        const bool of_group = event.group != runtime::no_group;
+        const bool of_group = event.group < layout.groups.size();
+        m.axis = of_group                          ? layout.groups[event.group].name
+                 : event.axis < layout.axes.size() ? layout.axes[event.axis].name
+                                                   : std::string{};
         m.command = of_group ? name(event.given.group_kind) : word(event.given.kind);
         m.program = program(event.given);
         m.block = block(event.given);
-        m.by_command = word(event.by.kind);
+        m.by_command = of_group ? name(event.by.group_kind) : word(event.by.kind);
         m.by_program = program(event.by);
         m.by_block = block(event.by);
         m.held_by_stop = event.held;

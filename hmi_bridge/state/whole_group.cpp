@@ -3,6 +3,8 @@
 #include <iterator>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
 #include "axes/group/group_equipment.hpp"
@@ -10,6 +12,7 @@
 #include "axes/group/written_pose.hpp"
 #include "hmi_bridge/state/lcm_text.hpp"
 #include "hmi_bridge/state/whole_state.hpp"
+#include "hmi_bridge/words/event_text.hpp"
 #include "hmi_bridge/words/place_text.hpp"
 #include "runtime/alarms.hpp"
 
@@ -21,8 +24,14 @@ using taktwerk_lcm::whole_refusal_v1_t;
 
 constexpr double degree = std::numbers::pi / 180;
 
+std::string_view axis_name(axes::AxisRef axis, const runtime::MachineLayout& layout) {
+    return axis.valid() && axis.index < layout.axes.size() ? std::string_view(layout.axes[axis.index].name) : std::string_view{};
+}
+
 /// Of a member it is an alarm, of the path the number of an error.
-void fill_error(whole_group_v3_t& out, std::uint16_t error) {
+void fill_error(whole_group_v3_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
+    const auto error = group.error;
+    const auto axis = axis_name(group.error_axis, layout);
     out.error = error;
     const auto put = [&](std::string_view name, std::string_view text, std::string_view cause, std::string_view remedy) {
         put_text(out.error_name, name);
@@ -33,13 +42,12 @@ void fill_error(whole_group_v3_t& out, std::uint16_t error) {
     const auto* alarm = find_alarm(axes::axis_alarms, error);
     if (!alarm) alarm = find_alarm(runtime::machine_alarms, error);
     const auto* text = axes::find_error(static_cast<axes::ErrorId>(error));
-    if (alarm) put(alarm->name, {}, alarm->cause, alarm->remedy);  // its sentence, with its numbers, stands among the alarms
+    // Its sentence, with its numbers, stands among the alarms.
+    if (alarm) put(alarm->name, axis.empty() ? std::string{} : of_axis(alarm->name, axis), alarm->cause, alarm->remedy);
+    else if (text && error != 0 && !axis.empty())
+        put(text->name, fmt::format("{}, namely axis {}", text->english.text, axis), text->english.cause, text->english.remedy);
     else if (text && error != 0) put(text->name, text->english.text, text->english.cause, text->english.remedy);
     else put({}, {}, {}, {});
-}
-
-std::string_view axis_name(axes::AxisRef axis, const runtime::MachineLayout& layout) {
-    return axis.valid() && axis.index < layout.axes.size() ? std::string_view(layout.axes[axis.index].name) : std::string_view{};
 }
 
 /// X Y Z, and turns in degrees, seen from the machine: seen from a frame of it.
@@ -136,16 +144,16 @@ void fill_way(whole_group_v3_t& out, const SeenGroup& group, const runtime::Mach
     out.operators_override = group.operators_override;
 }
 
-/// Of a path of axes: theirs, where it is one.
+/// Of a path that is one axis' own way: that axis'. Of several axes together it is the norm of their numbers, which is no length.
 void fill_path_unit(whole_group_v3_t& out, const SeenGroup& group, const runtime::MachineLayout& layout) {
-    std::string_view unit;
+    std::string_view unit = out.unit;
+    std::size_t count = 0;
     for (std::size_t place = 0; place < group.members.size(); ++place) {
         const auto axis = group.members[place];
         if ((group.along.members >> place & 1u) == 0 || !axis.valid() || axis.index >= layout.axes.size()) continue;
-        const std::string_view own = layout.axes[axis.index].unit;
-        unit = unit.empty() || unit == own ? own : "u";
+        unit = count++ == 0 ? std::string_view(layout.axes[axis.index].unit) : std::string_view("u");
     }
-    put_text(out.path_unit, unit.empty() ? std::string_view(out.unit) : unit);
+    put_text(out.path_unit, unit);
 }
 
 void fill_refusal(whole_refusal_v1_t& out, const SeenGroup& group, const runtime::MachineLayout& layout, std::size_t index) {
@@ -189,7 +197,7 @@ void fill(whole_group_v3_t& out, const runtime::Snapshot& snapshot, const runtim
     out.powered = group.powered;
     out.online = group.online;
     out.in_position = group.in_position;
-    fill_error(out, group.error);
+    fill_error(out, group, layout);
     fill_members(out, group, snapshot, layout);
     fill_frames(out, group, layout);
     fill_way(out, group, layout);

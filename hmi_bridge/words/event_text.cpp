@@ -54,27 +54,53 @@ std::string_view word(What what) noexcept { return what == What::refused ? "refu
 
 namespace {
 
+/// What led the group to GroupErrorStop, and whose that is.
+std::string reason_of(const CommandEvent& event, const runtime::MachineLayout& layout) {
+    const auto* alarm = alarm_of(event.axis_error);
+    const auto* error = axes::find_error(static_cast<axes::ErrorId>(event.axis_error));
+    const auto reason = alarm ? alarm->name : error ? error->name : std::string_view{"?"};
+    return event.error_axis < layout.axes.size() ? of_axis(reason, layout.axes[event.error_axis].name) : std::string(reason);
+}
+
+EventText aborted_of_group(const CommandEvent& event, const runtime::MachineLayout& layout, EventText out) {
+    const auto* text = axes::find_error(event.error);
+    const auto* alarm = event.axis_error != 0 ? alarm_of(event.axis_error) : nullptr;
+    if (event.axis_error != 0) {
+        out.what = fmt::format("{} was ended: the group went into GroupErrorStop ({})", out.who, reason_of(event, layout));
+        out.remedy = alarm ? sentence(alarm->remedy) : text ? sentence(text->english.remedy) : std::string{};
+    } else if (!out.by.empty()) {
+        const bool by_person = event.by.program == runtime::no_program && event.by.owner != axes::Owner::program;
+        out.what = fmt::format("{} was aborted by {}", out.who, out.by);
+        out.remedy = by_person                                 ? "A person has stopped the group: give the command again when it may go on."
+                     : event.by.program != event.given.program ? "Two programs command this group: let one of them do it."
+                                                               : "If that is not meant: wait for Done of the first, or give the second "
+                                                                 "BufferMode mcBuffered.";
+    } else {
+        out.what = fmt::format("{} was ended by the group itself", out.who);
+        out.remedy = "A person has stopped it, or the mode or the owner of its axes has changed: see what stands beside this in the log.";
+    }
+    return out;
+}
+
 EventText describe_of_group(const CommandEvent& event, const runtime::MachineLayout& layout) {
     EventText out;
     out.who = named(event.given, layout);
     if (out.who.empty()) out.who = "A command";
+    out.by = named(event.by, layout);
+    if (event.what == What::aborted) return aborted_of_group(event, layout, out);
     const auto* text = axes::find_error(event.error);
-    const auto* alarm = event.axis_error != 0 ? alarm_of(event.axis_error) : nullptr;
-    if (event.what == What::aborted) {
-        const auto reason = alarm ? alarm->name : text ? text->name : std::string_view{"?"};
-        out.what = fmt::format("{} was ended: the group went into GroupErrorStop ({})", out.who, reason);
-        out.remedy = alarm ? sentence(alarm->remedy) : text ? sentence(text->english.remedy) : std::string{};
-        return out;
-    }
     out.what = text ? fmt::format("{} was refused: {} ({})", out.who, text->english.text, text->name)
                     : fmt::format("{} was refused with error {:04X}h", out.who, static_cast<unsigned>(event.error));
     if (const auto where = place_text(event.place, layout, event.group, members_of(layout, event.group)); !where.empty())
         out.what += fmt::format(". Where: {}", where);
     out.remedy = text ? sentence(text->english.remedy) : std::string{};
+    if (event.error == axes::ErrorId::in_error_stop && event.axis_error != 0) out.what += fmt::format(", by {}", reason_of(event, layout));
     return out;
 }
 
 }  // namespace
+
+std::string of_axis(std::string_view error, std::string_view axis) { return fmt::format("{} of axis {}", error, axis); }
 
 std::string event_subject(const CommandEvent& event, const runtime::MachineLayout& layout) {
     if (event.group < layout.groups.size()) return fmt::format("group {}", layout.groups[event.group].name);

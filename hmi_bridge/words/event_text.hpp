@@ -16,6 +16,8 @@ struct EventText {
 /// "axis x", "group arm".
 [[nodiscard]] std::string event_subject(const runtime::CommandEvent& event, const runtime::MachineLayout& layout);
 [[nodiscard]] EventText describe(const runtime::CommandEvent& event, const runtime::MachineLayout& layout);
+/// Whose an error of a group is: "drive_fault of axis elbow".
+[[nodiscard]] std::string of_axis(std::string_view error, std::string_view axis);
 /// "refused", "aborted".
 [[nodiscard]] std::string_view word(runtime::CommandEvent::What what) noexcept;
 

@@ -90,7 +90,8 @@ public:
         engrave(ctx);
         hold_.Execute = holds_ && move_.Busy;
         hold_(ctx);
-        continue_.Execute = !holds_ && move_.Busy && hold_was_;
+        // While a person keeps it interrupted it is refused (held_by_person), and asks again.
+        continue_.Execute = !holds_ && move_.Busy && hold_was_ && !continue_.Error;
         continue_(ctx);
         if (hold_.Done) hold_was_ = true;
         if (continue_.Done || !move_.Busy) hold_was_ = false;

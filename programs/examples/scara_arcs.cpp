@@ -37,7 +37,7 @@ public:
         speed_ = d.parameter("speed", {.value = 200, .minimum = 1, .maximum = 500, .unit = "mm/s", .doc = "of the tool along its path"});
         corner_ =
             d.parameter("corner", {.value = 6, .minimum = 0, .maximum = 20, .unit = "mm", .doc = "where the curve of a corner begins"});
-        d.operator_switch("draws", draws_);
+        d.operator_switch("draws", draws_, {.doc = "one lap after the other; a stop and an error switch it off"});
         d.monitor("laps", laps_, "", "drawn since start");
         d.monitor("failed", failed_, "", "commands that ended with an error");
         d.monitor("x", x_, "mm", "of the tool, set");
@@ -49,7 +49,8 @@ public:
     }
 
     void start() override {
-        there_ = false;
+        there_ = idle_ = false;
+        draws_ = true;
         to_start_.Execute = up_.Execute = far_.Execute = down_.Execute = near_.Execute = enable_.Execute = reset_.Execute = false;
         for (auto& home : homes_) home.Execute = false;
     }
@@ -118,7 +119,8 @@ private:
         if (to_start_.Error || up_.Error || far_.Error || down_.Error || near_.Error) ++failed_;
         if (to_start_.Done || broken) to_start_.Execute = false;
         if (near_.Done || broken) up_.Execute = far_.Execute = down_.Execute = near_.Execute = false;
-        if (broken) there_ = false;
+        // Somebody has stopped it, or has to look: it does not begin by itself.
+        if (broken) there_ = draws_ = false;
     }
 };
 

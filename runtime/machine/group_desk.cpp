@@ -32,7 +32,7 @@ GroupDesk::GroupDesk(MachineBody& body, HandMotion& hands)
       hands_(hands),
       hand_(body),
       seen_(body.axis_groups.size()),
-      held_(body.axis_groups.size()),
+      programs_too_(body.axis_groups.size()),
       accelerations_(body.axis_groups.size()) {}
 
 std::uint64_t GroupDesk::newest_stop(std::size_t group) const noexcept {
@@ -76,17 +76,24 @@ Verdict GroupDesk::halt(std::size_t group) noexcept {
 
 // As a stop: carried out in the name of whoever moves it.
 Verdict GroupDesk::interrupt(std::size_t group) noexcept {
-    const auto verdict = submit(group, GroupCommandKind::interrupt, owner_of(group));
-    if (verdict.answer == Answer::accepted) held_[group] = 1;
+    auto& of = body_.axis_groups[group];
+    const bool by_program = !of.view().held && (of.view().interrupted || of.view().interrupting != 0);
+    const auto verdict = by_program ? Verdict{} : submit(group, GroupCommandKind::interrupt, owner_of(group));
+    if (verdict.answer != Answer::accepted) return verdict;
+    of.hold(true);
+    programs_too_[group] = by_program ? 1 : 0;
     return verdict;
 }
 
 // What a program has interrupted, it has for its own reasons: nobody at a panel knows whether they are over.
 Verdict GroupDesk::go_on(std::size_t group) noexcept {
     if (body_.emergency) return {Answer::not_possible_now, ErrorId::interlocked};
-    if (held_[group] == 0) return verdict_of(ErrorId::nothing_interrupted);
+    auto& of = body_.axis_groups[group];
+    if (!of.view().held) return verdict_of(ErrorId::nothing_interrupted);
+    of.hold(false);
+    if (programs_too_[group] != 0) return {};
     const auto verdict = submit(group, GroupCommandKind::resume, owner_of(group));
-    if (verdict.answer == Answer::accepted) held_[group] = 0;
+    if (verdict.answer != Answer::accepted) of.hold(true);
     return verdict;
 }
 
@@ -138,11 +145,11 @@ void GroupDesk::look_at_use(const axes::GroupView& view, std::size_t place, Seen
 void GroupDesk::look_at(std::size_t group) noexcept {
     const auto& view = body_.axis_groups[group].view();
     auto& seen = seen_[group];
-    if (!view.interrupted && view.interrupting == 0) held_[group] = 0;  // a program went on, or gave it up
     seen.state = view.state;
     seen.error = view.error;
+    seen.error_axis = view.has(view.error_place) ? view.members[view.error_place] : axes::AxisRef{};
     seen.interrupted = view.interrupted;
-    seen.held = held_[group] != 0;
+    seen.held = view.held;
     seen.resetting = view.resetting;
     seen.powered = view.powered;
     seen.online = view.online;

@@ -30,6 +30,8 @@ Verdict HandMotion::stop(std::size_t axis) noexcept {
         group->halt();
         return {};
     }
+    // It stands, interrupted: its program would go on behind this stop.
+    if (const auto group = body_.axis_groups.group_of(ref); group.valid()) body_.axis_groups[group.index].halt();
     switch (body_.axes[axis].view().state) {
         case AxisState::Disabled:
         case AxisState::Stopping:

@@ -7,6 +7,19 @@
 namespace taktwerk::runtime {
 
 using axes::ErrorId;
+using axes::GroupCommandKind;
+
+namespace {
+
+bool aborted(const axes::GroupView& view, axes::CommandId id) noexcept { return view.status(id) == axes::CommandStatus::aborted; }
+
+/// Who gives one of these to his own command wants that.
+bool stops(GroupCommandKind kind) noexcept {
+    return kind == GroupCommandKind::halt || kind == GroupCommandKind::stop || kind == GroupCommandKind::disable ||
+           kind == GroupCommandKind::interrupt;
+}
+
+}  // namespace
 
 /// The view says where, of the last one alone.
 CommandEvent WatchedGroups::event_of(std::size_t group, const CommandGiver& giver, ErrorId error, axes::CommandId id) const noexcept {
@@ -16,15 +29,33 @@ CommandEvent WatchedGroups::event_of(std::size_t group, const CommandGiver& give
     event.group = static_cast<std::uint16_t>(group);
     event.given = giver;
     event.error = error;
-    event.axis_error = view.state == axes::GroupState::GroupErrorStop ? view.error : std::uint16_t{0};
+    if (view.state == axes::GroupState::GroupErrorStop) {
+        event.axis_error = view.error;
+        if (view.has(view.error_place)) event.error_axis = view.members[view.error_place].index;
+    }
     if (view.refusal.id == id && view.refusal.why.error == error) event.place = view.refusal.why;
     return event;
 }
 
+const CommandGiver* WatchedGroups::giver_of(const Place& place, axes::CommandId id) noexcept {
+    const auto given = std::find_if(place.given.begin(), place.given.end(), [&](const Given& g) { return g.id == id; });
+    return id == 0 || given == place.given.end() ? nullptr : &given->giver;
+}
+
+void WatchedGroups::note_aborted(std::size_t group, axes::CommandId id, const CommandGiver& by) noexcept {
+    const auto* loser = giver_of(places_[group], id);
+    if (loser == nullptr) return;
+    auto event = event_of(group, *loser, ErrorId::none, id);
+    event.what = CommandEvent::What::aborted;
+    event.by = by;
+    axes_.note(event);
+}
+
 axes::Submitted WatchedGroups::submit(axes::GroupRef group, const axes::GroupCommand& command, axes::Owner owner,
                                       std::uint16_t program) noexcept {
+    if (group.index >= places_.size()) return groups_.submit(group, command, owner);
+    const auto before = groups_[group.index].view().active;
     const auto answer = groups_.submit(group, command, owner);
-    if (group.index >= places_.size()) return answer;
     CommandGiver giver;
     giver.group_kind = command.kind;
     giver.owner = owner;
@@ -35,10 +66,24 @@ axes::Submitted WatchedGroups::submit(axes::GroupRef group, const axes::GroupCom
         return answer;
     }
     auto& place = places_[group.index];
+    if (before != 0 && before != answer.id && aborted(groups_[group.index].view(), before)) {
+        const auto* loser = giver_of(place, before);
+        const bool own_stop = loser != nullptr && loser->program == program && stops(command.kind);
+        if (!own_stop) note_aborted(group.index, before, giver);
+        if (place.active == before) place.active = 0;
+    }
     place.given[place.next] = {answer.id, giver};
     place.next = static_cast<std::uint8_t>((place.next + 1) % place.given.size());
     return answer;
 }
+
+namespace {
+
+bool has_ended(const CommandGiver& given, const ProgramRecords& programs) noexcept {
+    return given.program < programs.size() && !programs[given.program].running();
+}
+
+}  // namespace
 
 void WatchedGroups::end_of_cycle(bool everything_ends, const ProgramRecords& programs) noexcept {
     for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -48,16 +93,23 @@ void WatchedGroups::end_of_cycle(bool everything_ends, const ProgramRecords& pro
             const auto& over = view.ledger[place.ledger];
             // What waited behind an error ended with it: that one is told.
             if (over.outcome != axes::Outcome::error || over.error == ErrorId::aborted_by_axis_error) continue;
-            const auto given = std::find_if(place.given.begin(), place.given.end(), [&](const Given& g) { return g.id == over.id; });
-            if (over.id == 0 || given == place.given.end()) continue;
-            const auto program = given->giver.program;
-            if (everything_ends || (program < programs.size() && !programs[program].running())) continue;
-            auto event = event_of(i, given->giver, over.error, over.id);
+            const auto* given = giver_of(place, over.id);
+            if (given == nullptr || everything_ends || has_ended(*given, programs)) continue;
+            auto event = event_of(i, *given, over.error, over.id);
             // What stopped the group stands beside this as an alarm, or is the group's error: the command did not fail by itself.
             const bool stopped = event.axis_error != 0 && static_cast<std::uint16_t>(over.error) == event.axis_error;
             if (stopped) event.what = CommandEvent::What::aborted;
             axes_.note(event);
         }
+        if (place.active != 0 && place.active != view.active && aborted(view, place.active)) {
+            const auto* given = giver_of(place, place.active);
+            // A halt that no program gave is the machine's hand: a person's stop, or another mode.
+            CommandGiver by;
+            if (view.active_kind == GroupCommandKind::halt && giver_of(place, view.active) == nullptr)
+                by = {axes::CommandKind::none, axes::Owner::operator_panel, no_program, nullptr, GroupCommandKind::halt};
+            if (given != nullptr && !everything_ends && !has_ended(*given, programs)) note_aborted(i, place.active, by);
+        }
+        place.active = view.active;
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What programs ask of groups of axes, on its way there: carried out as it is, and what is refused, or in its turn ends with an error, is noted among the
-// commands that axes refused (watched_requests.hpp). Real-time safe.
+// What programs ask of groups of axes, on its way there: carried out as it is, and what is refused, in its turn ends with an error, or is ended by another
+// command or a person before its time, is noted among the commands that axes refused (watched_requests.hpp). Real-time safe.
 
 #include <array>
 #include <cstdint>
@@ -29,8 +29,12 @@ private:
     struct Place {
         std::array<Given, 32> given{};  // a ring: more than a group holds at a time
         std::uint8_t next = 0;
-        std::uint8_t ledger = 0;  // up to where the view's is told
+        std::uint8_t ledger = 0;     // up to where the view's is told
+        axes::CommandId active = 0;  // at the end of the cycle before, and not told yet
     };
+    [[nodiscard]] static const CommandGiver* giver_of(const Place& place, axes::CommandId id) noexcept;
+    /// The active command `id` has been aborted by `by`: nobody, the group itself.
+    void note_aborted(std::size_t group, axes::CommandId id, const CommandGiver& by) noexcept;
     [[nodiscard]] CommandEvent event_of(std::size_t group, const CommandGiver& giver, axes::ErrorId error,
                                         axes::CommandId id) const noexcept;
 

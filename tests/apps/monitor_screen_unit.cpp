@@ -13,6 +13,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StrEq;
 using Json = nlohmann::ordered_json;
 
 Json axis(const std::string& name) {
@@ -183,6 +184,18 @@ TEST(MonitorScreen, AGroupSaysWhatItDoesAndWhoHoldsItBack) {
     EXPECT_THAT(monitor_screen(with_group, layout, {110, 40, false}), Contains(HasSubstr("INTERRUPTED by a person")));
 }
 
+// The measure of a way of several axes is the norm of their numbers: no millimetres, and only its share says how far it is.
+TEST(MonitorScreen, AWayOfAxesHasNoLength) {
+    auto direct = state(2, 0);
+    direct["groups"] = Json::array({group()});
+    direct["groups"][0]["path_unit"] = "u";
+    direct["groups"][0]["command"] = "MC_MoveDirectAbsolute";
+    const auto lines = monitor_screen(direct, layout, {110, 40, false});
+    EXPECT_THAT(lines, Contains(HasSubstr("200.0 u/s of its axes together, held back by axis a0")));
+    EXPECT_THAT(lines, Contains(HasSubstr("MC_MoveDirectAbsolute cell.up  42 %, 0.6 s, 3 wait")));
+    EXPECT_THAT(lines, Not(Contains(HasSubstr("to go"))));
+}
+
 // In step with its belt, and where the tool is on it; an older runtime says nothing of that.
 TEST(MonitorScreen, AGroupThatGoesWithABeltSaysSo) {
     auto on_belt = state(2, 0);
@@ -244,9 +257,13 @@ TEST(MonitorScreen, AGroupInErrorSaysWhyAlsoWhereThereIsNoRoom) {
     arm["error_text"] = "The tool cannot be there";
     arm["error_cause"] = "It is too far";
     arm["error_remedy"] = "Come nearer";
+    auto of_axis = broken;
+    of_axis["groups"][0]["error_name"] = "drive_fault";
+    of_axis["groups"][0]["error_text"] = "drive_fault of axis elbow";
     for (const std::size_t rows : {24u, 60u}) {
         const auto lines = monitor_screen(broken, layout, {80, rows, false});
         EXPECT_THAT(lines, Contains(HasSubstr("out_of_reach: The tool cannot be there"))) << rows;
+        EXPECT_THAT(monitor_screen(of_axis, layout, {80, rows, false}), Contains(StrEq("   drive_fault of axis elbow"))) << rows;
         EXPECT_THAT(lines, Contains(HasSubstr("-> Come nearer"))) << rows;
     }
 }

@@ -1,5 +1,6 @@
 // Traces read back, and what a picture needs of them.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

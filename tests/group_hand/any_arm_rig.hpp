@@ -7,140 +7,70 @@
 #include <map>
 #include <optional>
 
-#include "hmi_bridge/gateway/gateway.hpp"
-#include "hmi_bridge/runtime_link.hpp"
 #include "tests/group_hand/arms_by_hand.hpp"
-#include "tests/programs/examples/example_machine.hpp"
+#include "tests/group_hand/gateway_hand.hpp"
 
 namespace taktwerk::group_hand {
-
-using namespace std::chrono_literals;
-using hmi::CommandKind;
-using runtime::Answer;
-using runtime::Mode;
 
 struct ArmSpeeds {
     double manual = 60, setup = 40;  ///< u/s, of each axis
     double tool = 0;                 ///< mm/s in set-up mode; 0: as without a word
 };
 
-class AnyArmRig {
+class AnyArmRig : public GatewayHand {
 public:
     /// Of a hand that is taken away: the lease of 200 ms, the planner's lead, and the slowest ramp on a path of these machines.
     static constexpr auto longest_stop = 1s;
 
     explicit AnyArmRig(MachineArm of, const ArmSpeeds& speeds = {}, Mode start = Mode::manual)
-        : arm{std::move(of)},
-          m{arm.machine,
-            [&](runtime::MachineConfig& config) {
-                config.start_mode = start;
-                config.simulation.events.clear();
-                for (auto& binding : config.axes) {
-                    if (std::find(arm.joints.begin(), arm.joints.end(), binding.axis.name) == arm.joints.end()) continue;
-                    binding.axis.manual = {5, speeds.manual, speeds.setup};
-                }
-                auto& group = config.axis_groups[0];
-                group.setup_velocity = speeds.tool;
-                EXPECT_TRUE(group.equipment.tools.define(1, {.frame = {arm.tool[0], arm.tool[1], arm.tool[2], 0, 0, 0}, .body = {}}));
-                group.equipment.selected_tool = 1;
-            }},
+        : GatewayHand{of.machine,
+                      [&](runtime::MachineConfig& config) {
+                          config.start_mode = start;
+                          config.simulation.events.clear();
+                          for (auto& binding : config.axes) {
+                              if (std::find(of.joints.begin(), of.joints.end(), binding.axis.name) == of.joints.end()) continue;
+                              binding.axis.manual = {5, speeds.manual, speeds.setup};
+                          }
+                          auto& group = config.axis_groups[0];
+                          group.setup_velocity = speeds.tool;
+                          EXPECT_TRUE(
+                              group.equipment.tools.define(1, {.frame = {of.tool[0], of.tool[1], of.tool[2], 0, 0, 0}, .body = {}}));
+                          group.equipment.selected_tool = 1;
+                      }},
+          arm{std::move(of)},
           tool_limit(speeds.tool > 0 ? speeds.tool : 250) {
         for (std::size_t i = 0; i < m.config().axes.size(); ++i)
             for (const auto& joint : arm.joints)
                 if (m.config().axes[i].axis.name == joint) places_.push_back(i);
         before_.resize(places_.size());
-        a = open("panel A");
-        b = open("panel B");
         m.each_cycle = [this] { look(); };
         EXPECT_TRUE(m.up());
         step();
         EXPECT_TRUE(until([&] { return all([](const auto& axis) { return axis.online; }); }, 10s));
     }
-    ~AnyArmRig() { m.each_cycle = {}; }
-    AnyArmRig(const AnyArmRig&) = delete;
-    AnyArmRig& operator=(const AnyArmRig&) = delete;
 
-    hmi::ClientId open(const std::string& name) { return gateway.open(hmi::Source::socket, name, hmi::Rights::commissioning); }
-
-    /// One cycle of the machine, and of the gateway beside it.
-    void step() {
-        gateway.observe(true);
-        gateway.step(m.now());
-        while (auto reply = gateway.next_reply()) {
-            const auto sent = asked_.find({reply->client, reply->sequence});
-            if (sent != asked_.end() && reply->accepted()) took(sent->second);
-            replies_[{reply->client, reply->sequence}] = *reply;
-        }
-        m.run(1ms);
-    }
-    void run(Duration time) {
-        for (auto end = m.now() + time; m.now() < end;) step();
-    }
-    bool until(const std::function<bool()>& condition, Duration most) {
-        for (auto end = m.now() + most; m.now() < end && !condition();) step();
-        return condition();
-    }
-
-    /// Handed over in this cycle; the answer comes with a later one.
-    std::uint64_t send(hmi::CommandRequest request, hmi::ClientId client) {
-        request.client = client;
-        request.sequence = ++sequence_;
-        request.arrival.after = m.machine().levels_raised();
-        asked_[{client, sequence_}] = request;
-        if ((request.kind == CommandKind::group_jog || request.kind == CommandKind::jog) && request.value != 0) asked_hold_ = m.now();
-        asked_at_[sequence_] = m.now();
-        gateway.observe(true);
-        gateway.handle(request, m.now());
-        return sequence_;
-    }
     /// What was asked last, and what came of it: of a failure.
     [[nodiscard]] std::string history() const {
         std::string all;
         for (auto entry = asked_.begin(); entry != asked_.end(); ++entry) {
-            if (entry->first.second + 24 < sequence_) continue;
+            if (entry->first.second + 24 < sequence) continue;
             const auto& r = entry->second;
-            const auto answer = replies_.find(entry->first);
+            const auto answer = replies.find(entry->first);
             const auto* word = hmi::find_command(r.kind);
             all += "\n  " + std::to_string(asked_at_.at(entry->first.second).time_since_epoch().count() / 1'000'000) + " ms #" +
                    std::to_string(entry->first.second) + " client " + std::to_string(entry->first.first) + ": " +
                    (word ? std::string(word->word) : "?") + " " + r.target + " " + std::to_string(r.value) + (r.press ? " press" : "") +
                    (r.kind == CommandKind::mode ? " mode " + std::to_string(static_cast<int>(r.mode)) : "") + " " + r.group_jog.frame +
                    " " + r.group_jog.direction + " " + std::to_string(r.group_jog.distance) + " -> " +
-                   (answer == replies_.end()    ? "-"
+                   (answer == replies.end()     ? "-"
                     : answer->second.accepted() ? "accepted"
                                                 : answer->second.error.text());
         }
         return all;
     }
-    hmi::CommandReply reply(hmi::ClientId client, std::uint64_t of) {
-        EXPECT_TRUE(until([&] { return replies_.count({client, of}) != 0; }, 3s));
-        return replies_[{client, of}];
-    }
-    hmi::CommandReply order(hmi::ClientId client, CommandKind kind, const std::string& target, double value = 0, double value2 = 0) {
-        hmi::CommandRequest request;
-        request.kind = kind;
-        request.target = target;
-        request.value = value;
-        request.value2 = value2;
-        return reply(client, send(request, client));
-    }
-    hmi::CommandReply mode(Mode wanted) { return reply(a, send(mode_request(wanted), a)); }
-    static hmi::CommandRequest mode_request(Mode wanted) {
-        hmi::CommandRequest request;
-        request.kind = CommandKind::mode;
-        request.mode = wanted;
-        return request;
-    }
     [[nodiscard]] hmi::CommandRequest jog_request(const std::string& frame, const std::string& direction, double velocity = 1,
                                                   double distance = 0, bool press = true) const {
-        hmi::CommandRequest request;
-        request.kind = CommandKind::group_jog;
-        request.target = arm.group;
-        request.value = velocity;
-        request.press = press;
-        request.valid_for = 250ms;
-        request.group_jog = {frame, direction, distance};
-        return request;
+        return jog_request_of(arm.group, frame, direction, velocity, distance, press);
     }
     hmi::CommandReply jog(const hmi::CommandRequest& request, hmi::ClientId client) { return reply(client, send(request, client)); }
     /// Pressed, then renewed each 50 ms; until it is refused, or for so long.
@@ -203,7 +133,6 @@ public:
             if (const auto& axis = m.axis(joint); axis.powered && (axis.set_velocity != 0 || axis.active != 0)) return false;
         return true;
     }
-    const runtime::SeenGroup& seen() { return m.snapshot().groups[0]; }
     Point tool() {
         std::vector<double> q;
         for (const auto& joint : arm.joints) q.push_back(m.axis(joint).set_position);
@@ -211,10 +140,6 @@ public:
     }
 
     MachineArm arm;
-    testing::ExampleMachine m;
-    hmi::RuntimeLink link{m.machine()};
-    hmi::Gateway gateway{link};
-    hmi::ClientId a = 0, b = 0;
     double tool_limit;         ///< mm/s
     double fastest_tool = 0;   ///< mm/s in set-up mode, since it was set to 0
     bool watches_hand = true;  ///< outside automatic mode: nothing moves without a hand
@@ -224,6 +149,15 @@ private:
     template <class Is>
     bool all(const Is& is) {
         return std::all_of(arm.joints.begin(), arm.joints.end(), [&](const auto& joint) { return is(m.axis(joint)); });
+    }
+    void sends(const hmi::CommandRequest& request) override {
+        asked_[{request.client, request.sequence}] = request;
+        if ((request.kind == CommandKind::group_jog || request.kind == CommandKind::jog) && request.value != 0) asked_hold_ = m.now();
+        asked_at_[request.sequence] = m.now();
+    }
+    void answered(const hmi::CommandReply& reply) override {
+        const auto sent = asked_.find({reply.client, reply.sequence});
+        if (sent != asked_.end() && reply.accepted()) took(sent->second);
     }
     void took(const hmi::CommandRequest& request) {
         if ((request.kind == CommandKind::group_jog || request.kind == CommandKind::jog) && request.value != 0) held_at_ = m.now();
@@ -337,9 +271,7 @@ private:
     bool placed_ = false;  // what was searched has been found: places do not change by themselves any more
     bool were_together_ = false, calm_ = false;
     std::optional<Instant> asked_hold_, held_at_, own_at_, manual_at_;
-    std::uint64_t sequence_ = 0;
     std::map<std::pair<hmi::ClientId, std::uint64_t>, hmi::CommandRequest> asked_;
-    std::map<std::pair<hmi::ClientId, std::uint64_t>, hmi::CommandReply> replies_;
     std::map<std::uint64_t, Instant> asked_at_;
 };
 

@@ -6,21 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
 
-#include "hmi_bridge/gateway/gateway.hpp"
-#include "hmi_bridge/runtime_link.hpp"
-#include "tests/programs/examples/example_machine.hpp"
+#include "tests/group_hand/gateway_hand.hpp"
 
 namespace taktwerk::group_hand {
-
-using namespace std::chrono_literals;
-using hmi::CommandKind;
-using runtime::Answer;
-using runtime::Mode;
 
 inline constexpr std::array<const char*, 4> joints{"shoulder", "elbow", "lift", "wrist"};
 
@@ -34,7 +26,7 @@ struct Speeds {
     double tool = 0;                 ///< mm/s in set-up mode; 0: as without a word
 };
 
-class HandRig {
+class HandRig : public GatewayHand {
 public:
     struct Given {
         std::string frame = "mcs", direction = "";
@@ -43,18 +35,16 @@ public:
     };
 
     explicit HandRig(const Speeds& speeds = {})
-        : m{"scara",
-            [&](runtime::MachineConfig& config) {
-                config.start_mode = Mode::manual;
-                for (auto& binding : config.axes) {
-                    binding.axis.manual.fast = speeds.manual;
-                    binding.axis.manual.setup_velocity = speeds.setup;
-                }
-                config.axis_groups[0].setup_velocity = speeds.tool;
-            }},
+        : GatewayHand{"scara",
+                      [&](runtime::MachineConfig& config) {
+                          config.start_mode = Mode::manual;
+                          for (auto& binding : config.axes) {
+                              binding.axis.manual.fast = speeds.manual;
+                              binding.axis.manual.setup_velocity = speeds.setup;
+                          }
+                          config.axis_groups[0].setup_velocity = speeds.tool;
+                      }},
           tool_limit(speeds.tool > 0 ? speeds.tool : 250) {
-        a = gateway.open(hmi::Source::socket, "panel A", hmi::Rights::commissioning);
-        b = gateway.open(hmi::Source::socket, "panel B", hmi::Rights::commissioning);
         m.each_cycle = [this] { look(); };
         EXPECT_TRUE(m.up());
         EXPECT_TRUE(m.until(
@@ -72,60 +62,9 @@ public:
         const auto enabled = order(a, CommandKind::group_enable, "arm");
         EXPECT_TRUE(enabled.accepted()) << enabled.error.what;
     }
-    ~HandRig() { m.each_cycle = {}; }
-    HandRig(const HandRig&) = delete;
-    HandRig& operator=(const HandRig&) = delete;
 
-    /// One step of the machine, and of the gateway beside it.
-    void step() {
-        gateway.observe(true);
-        gateway.step(m.now());
-        while (auto reply = gateway.next_reply()) replies[{reply->client, reply->sequence}] = *reply;
-        m.run(1ms);
-    }
-    void run(Duration time) {
-        for (auto end = m.now() + time; m.now() < end;) step();
-    }
-    bool until(const std::function<bool()>& condition, Duration most) {
-        for (auto end = m.now() + most; m.now() < end && !condition();) step();
-        return condition();
-    }
-
-    std::uint64_t send(hmi::CommandRequest request, hmi::ClientId client) {
-        request.client = client;
-        request.sequence = ++sequence;
-        request.arrival.after = m.machine().levels_raised();
-        gateway.observe(true);
-        gateway.handle(request, m.now());
-        return sequence;
-    }
-    hmi::CommandReply reply(hmi::ClientId client, std::uint64_t of) {
-        EXPECT_TRUE(until([&] { return replies.count({client, of}) != 0; }, 3s));
-        return replies[{client, of}];
-    }
-    hmi::CommandReply order(hmi::ClientId client, CommandKind kind, const std::string& target, double value = 0, double value2 = 0) {
-        hmi::CommandRequest request;
-        request.kind = kind;
-        request.target = target;
-        request.value = value;
-        request.value2 = value2;
-        return reply(client, send(request, client));
-    }
-    hmi::CommandReply mode(Mode wanted) {
-        hmi::CommandRequest request;
-        request.kind = CommandKind::mode;
-        request.mode = wanted;
-        return reply(a, send(request, a));
-    }
     static hmi::CommandRequest jog_of(const Given& given) {
-        hmi::CommandRequest request;
-        request.kind = CommandKind::group_jog;
-        request.target = "arm";
-        request.value = given.velocity;
-        request.press = given.press;
-        request.valid_for = 250ms;
-        request.group_jog = {given.frame, given.direction, given.distance};
-        return request;
+        return jog_request_of("arm", given.frame, given.direction, given.velocity, given.distance, given.press);
     }
     hmi::CommandReply jog(Given given, std::optional<hmi::ClientId> client = {}) {
         const auto who = client.value_or(a);
@@ -156,7 +95,6 @@ public:
         return true;
     }
     double at(const std::string& joint) { return m.axis(joint).set_position; }
-    const runtime::SeenGroup& seen() { return m.snapshot().groups[0]; }
     /// To where an MCS jog has room: off the stretched arm.
     void bend() {
         ASSERT_TRUE(jog({"acs", "elbow+", 1, 60}).accepted());
@@ -166,12 +104,6 @@ public:
         ASSERT_NEAR(at("elbow"), 60, 1e-9);
     }
 
-    testing::ExampleMachine m;
-    hmi::RuntimeLink link{m.machine()};
-    hmi::Gateway gateway{link};
-    hmi::ClientId a = 0, b = 0;
-    std::uint64_t sequence = 0;
-    std::map<std::pair<hmi::ClientId, std::uint64_t>, hmi::CommandReply> replies;
     double tool_limit;                ///< mm/s
     double fastest_tool = 0;          ///< mm/s since it was set to 0
     std::optional<Instant> held_at;   ///< the newest accepted press, renewal or own motion of an axis

@@ -138,6 +138,35 @@ TEST_F(EventTextTest, AGroupsRefusedCommandSaysWhichRoomAndWhere) {
     event.what = CommandEvent::What::aborted;
     event.axis_error = axes::id(axes::AxisAlarm::drive_fault);
     EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was ended: the group went into GroupErrorStop (drive_fault)");
+    event.error_axis = 1;
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was ended: the group went into GroupErrorStop (drive_fault of axis y)");
+    event.what = CommandEvent::What::refused;
+    event.error = ErrorId::in_error_stop;
+    EXPECT_THAT(text().what, HasSubstr("(in_error_stop), by drive_fault of axis y"));
+}
+
+// Who ended a group's command, and what is to be done: another program, its own, a person, or nobody.
+TEST_F(EventTextTest, AGroupsAbortedCommandSaysByWhom) {
+    event = {};
+    event.what = CommandEvent::What::aborted;
+    event.group = 0;
+    event.axis = axes::AxisRef{}.index;
+    event.given.owner = Owner::program;
+    event.given.program = 0;
+    event.given.block = &pick[8];
+    event.given.group_kind = axes::GroupCommandKind::linear_absolute;
+    event.by = {axes::CommandKind::none, Owner::program, 1, nullptr, axes::GroupCommandKind::halt};
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was aborted by MC_GroupHalt of program feeder");
+    EXPECT_THAT(text().remedy, HasSubstr("Two programs command this group"));
+    event.by.program = 0;
+    event.by.group_kind = axes::GroupCommandKind::linear_relative;
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was aborted by MC_MoveLinearRelative of program cell");
+    EXPECT_THAT(text().remedy, HasSubstr("mcBuffered"));
+    event.by = {axes::CommandKind::none, Owner::operator_panel, runtime::no_program, nullptr, axes::GroupCommandKind::halt};
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was aborted by MC_GroupHalt of the operator");
+    EXPECT_THAT(text().remedy, HasSubstr("A person has stopped the group"));
+    event.by = {};
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was ended by the group itself");
 }
 
 }  // namespace

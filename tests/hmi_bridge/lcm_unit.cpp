@@ -258,6 +258,29 @@ TEST_F(LcmTest, ARefusedCommandIsPublishedOnceAndItsCountLater) {
     EXPECT_EQ(told[1].times, 11);
 }
 
+// A command to a group has the group's name where an axis has its own, and the words of groups for who ended it.
+TEST_F(LcmTest, ACommandOfAGroupNamesTheGroup) {
+    open({});
+    bridge->step(now);
+    auto& event = machine.snapshot.events[0];
+    event.number = 5;
+    event.what = runtime::CommandEvent::What::aborted;
+    event.axis = axes::AxisRef{}.index;
+    event.group = 0;
+    event.given = {axes::CommandKind::none, axes::Owner::program, 0, nullptr, axes::GroupCommandKind::linear_absolute};
+    event.by = {axes::CommandKind::none, axes::Owner::program, 1, nullptr, axes::GroupCommandKind::halt};
+    machine.snapshot.event_count = 1;
+    bridge->step(now += 1ms);
+    const auto told = decoded<command_event_v1_t>(*bus, "TAKTWERK_DEMO_COMMAND_EVENT");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].axis, "table");
+    EXPECT_EQ(told[0].command, "MC_MoveLinearAbsolute");
+    EXPECT_EQ(told[0].by_command, "MC_GroupHalt");
+    EXPECT_EQ(told[0].by_program, "feeder");
+    EXPECT_THAT(told[0].english,
+                HasSubstr("group table: MC_MoveLinearAbsolute of program cell was aborted by MC_GroupHalt of program feeder"));
+}
+
 TEST_F(LcmTest, AChangedAlarmIsPublishedAtOnce) {
     open({});
     for (int i = 0; i < 3; ++i) step();

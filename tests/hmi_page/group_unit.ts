@@ -5,7 +5,7 @@ import { why_not_own } from '@page/group/hand';
 import { path_text, window_around } from '@page/group/path_view';
 import { Trail } from '@page/group/trail';
 import { Answer, Request } from '@page/link';
-import { goes_with, held_back, why_error, why_refused } from '@page/pages/group';
+import { goes_with, held_back, left_to_go, why_error, why_refused } from '@page/pages/group';
 import { GroupState, MachineState } from '@page/state';
 import { choose_language, say } from '@page/texts';
 
@@ -30,12 +30,21 @@ test('the frame that it goes with is named, and how well it does', () => {
     assert.doesNotMatch(goes_with({ ...belt, track_in_sync: true }), /3\.2/);
 });
 
+test('a way of several axes has a share and no length', () => {
+    assert.match(left_to_go({ ...group, path_unit: 'deg' }), /^5\.0 deg/);
+    assert.match(left_to_go({ ...group, path_unit: 'u' }), /^50 %/);
+});
+
 test('an error is said in the reader\'s language, with what to do', () => {
     assert.deepEqual(why_error(group), []);
     const stopped = { ...group, state: 'GroupErrorStop', error: 0x3001, error_name: 'following_error', error_text: '', error_cause: 'a cause', error_remedy: 'a remedy' };
     assert.deepEqual(why_error(stopped), [say('group_alarm_of_an_axis', { alarm: 'following_error' }), 'a cause', 'a remedy']);
+    const of_axis = { ...stopped, error_text: 'following_error of axis elbow' };
+    assert.equal(why_error(of_axis)[0], 'following_error of axis elbow');
     choose_language('zh');
     try {
+        assert.equal(why_error(of_axis)[0], '轴 elbow 的 following_error');
+        assert.equal(why_error({ ...of_axis, error_text: 'An axis was taken out of the group\'s motion, namely axis elbow' })[0], '某个轴脱离了轴组运动，即轴 elbow');
         assert.match(why_error(stopped)[0] ?? '', /[\u4e00-\u9fff]/);
     } finally {
         choose_language('en');

@@ -27,6 +27,7 @@ public:
     fb::MC_GroupReadError error;
     fb::MC_GroupReadActualPosition place;
     bool stops = false, resets = false, goes = true, in_machine = false;
+    fb::MC_BufferMode second_mode = fb::mcBuffered;
     std::int64_t done = 0, aborted = 0, failed = 0, group_error = 0, state = 0;
     double x = 0, y = 0;
 
@@ -74,7 +75,7 @@ public:
             second.Distance.A.Axes = {-60, -80, -30};
             second.Distance.C.Tcp = {.X = -60, .Y = -80, .Z = -30};
             first.Velocity = second.Velocity = 200;
-            second.BufferMode = fb::mcBuffered;
+            second.BufferMode = second_mode;
             first.Execute = true;
         }
         done += second.Done ? 1 : 0;
@@ -214,6 +215,43 @@ TEST(AxisGroupMachine, APersonsStopOfOneAxisHaltsTheGroup) {
     EXPECT_GE(variable(m, "aborted"), 1);
     EXPECT_EQ(variable(m, "failed"), 0);
     watch.expect_clean();
+    ASSERT_EQ(m.state().event_count, 1u) << "the one that ran; what waited ended with it";
+    const auto& event = m.state().events[0];
+    EXPECT_EQ(event.what, CommandEvent::What::aborted);
+    EXPECT_EQ(event.group, 0);
+    EXPECT_EQ(event.given.group_kind, axes::GroupCommandKind::linear_absolute);
+    EXPECT_EQ(m.machine->layout().block_at(event.given.block), "p.first");
+    EXPECT_EQ(event.by.owner, axes::Owner::operator_panel);
+    EXPECT_EQ(event.by.group_kind, axes::GroupCommandKind::halt);
+}
+
+/// Its second command takes the first over.
+class TakesOver : public Draws {
+public:
+    TakesOver() { second_mode = fb::mcAborting; }
+};
+
+// As of an axis: what another command of a program ends is told, with both; what a program stops itself is not.
+TEST(AxisGroupMachine, WhatAnotherCommandEndsIsToldAndAnOwnStopIsNot) {
+    TestMachine m(with_group(2, entry_of<TakesOver>));
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.state().event_count > 0; }, 10s));
+    const auto& event = m.state().events[0];
+    EXPECT_EQ(event.what, CommandEvent::What::aborted);
+    EXPECT_EQ(event.given.group_kind, axes::GroupCommandKind::linear_absolute);
+    EXPECT_EQ(event.by.group_kind, axes::GroupCommandKind::linear_relative);
+    EXPECT_EQ(event.by.program, 0);
+    EXPECT_EQ(event.error, axes::ErrorId::none);
+
+    TestMachine stopped(with_group(2));
+    ASSERT_TRUE(stopped.up());
+    ASSERT_TRUE(stopped.until([&] { return stopped.axis(1).set_velocity > 100; }, 20s));
+    const auto& names = stopped.machine->layout().variables;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i].name == "stops") (void)stopped.command(OperatorAction::set_value, static_cast<std::uint16_t>(i), false, 1);
+    ASSERT_TRUE(stopped.until([&] { return variable(stopped, "stopped") != 0; }, 3s));
+    EXPECT_GE(variable(stopped, "aborted"), 1);
+    EXPECT_EQ(stopped.state().event_count, 0u);
 }
 
 // The program ends in the middle of a line: on the path to rest, then power goes.
@@ -325,6 +363,7 @@ TEST(AxisGroupMachine, WhatEndsWithTheGroupIsToldAsEnded) {
                                     [](const auto& e) { return e.group == 0 && e.what == CommandEvent::What::aborted; });
     ASSERT_NE(found, s.events.begin() + static_cast<std::ptrdiff_t>(s.event_count));
     EXPECT_EQ(found->axis_error, axes::id(axes::AxisAlarm::drive_fault));
+    EXPECT_EQ(found->error_axis, 0) << "x";
 }
 
 }  // namespace

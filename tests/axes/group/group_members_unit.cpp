@@ -108,6 +108,7 @@ TEST(GroupMembers, AFaultOfOneEndsInGroupErrorStopAndTheOthersStayOnTheWay) {
     ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupErrorStop; }, 20));
     EXPECT_EQ(rig.axis(2).state, AxisState::ErrorStop);
     EXPECT_EQ(rig.view().error, rig.axis(2).error);
+    EXPECT_EQ(rig.view().error_place, 2) << "the third member's";
     EXPECT_EQ(rig.status(move.id), CommandStatus::error);
     EXPECT_EQ(rig.error_of(move.id), static_cast<ErrorId>(rig.axis(2).error));
     EXPECT_EQ(rig.error_of(waits.id), ErrorId::aborted_by_axis_error);
@@ -138,6 +139,7 @@ TEST(GroupMembers, AFaultOfOneEndsInGroupErrorStopAndTheOthersStayOnTheWay) {
     EXPECT_EQ(rig.groups.reset(GroupRig::ref, Owner::program), ErrorId::none);
     ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 5000));
     EXPECT_EQ(rig.view().error, 0);
+    EXPECT_EQ(rig.view().error_place, most_members);
 }
 
 // G-014: also without motion.
@@ -233,6 +235,18 @@ TEST(GroupMembers, ShuttingDownStopsOnTheWay) {
     EXPECT_EQ(rig.view().state, GroupStandby);
 }
 
+// What stops several at once is none of theirs: nobody is accused.
+TEST(GroupMembers, AnErrorOfSeveralNamesNone) {
+    GroupRig rig(3);
+    rig.enable();
+    (void)rig.give(line({60, 80, 20}, 90));
+    rig.run(400);
+    for (const std::size_t i : {0u, 2u}) rig.drives[i]->fault_code = 0x2310;
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupErrorStop; }, 20));
+    EXPECT_NE(rig.view().error, 0);
+    EXPECT_EQ(rig.view().error_place, most_members);
+}
+
 // What a configuration may say, each with its code.
 TEST(GroupConfig, SaysEveryProblem) {
     const std::vector<std::string> axes{"x", "y", "z", "u"};
@@ -244,6 +258,8 @@ TEST(GroupConfig, SaysEveryProblem) {
     EXPECT_EQ(codes({{.name = "g", .members = {"x", "y"}}, {.name = "h", .members = {"z"}}}), "");
     EXPECT_EQ(codes({{.name = "", .members = {"x"}}}), "group.no_name ");
     EXPECT_EQ(codes({{.name = "g"}, {.name = "g"}}), "group.name_twice ");
+    EXPECT_EQ(codes({{.name = "z", .members = {"x"}}}), "group.name_twice ")
+        << "an axis is called so, and people command both by their names";
     EXPECT_EQ(codes({{.name = "g", .members = {"w"}}}), "group.unknown_axis ");
     EXPECT_EQ(codes({{.name = "g", .members = {"x"}}, {.name = "h", .members = {"x"}}}), "group.axis_twice ");
     EXPECT_EQ(codes({{.name = "g", .members = axes, .kinematics = cartesian_arm()}}), "group.kinematics ");

@@ -385,6 +385,50 @@ TEST(GroupMotion, HeldAtAnyCycleOfItsLastRampItEndsWhereItWasToEnd) {
     EXPECT_GT(held, 40);
 }
 
+// What a person has interrupted no program goes on with; it ends with the interruption.
+TEST(GroupMotion, WhatAPersonHoldsIsNotGoneOnWith) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto move = rig.give(line({60, 80}, 100));
+    rig.run(300);
+    (void)rig.give(simply(GroupCommandKind::interrupt));
+    rig.groups[0].hold(true);
+    EXPECT_TRUE(rig.view().held) << "while it brakes, too";
+    ASSERT_TRUE(rig.until([&] { return rig.view().interrupted; }, 1000));
+    const auto place = rig.point();
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::held_by_person);
+    rig.run(500);
+    EXPECT_EQ(rig.point(), place);
+    rig.groups[0].hold(false);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000));
+    EXPECT_FALSE(rig.view().held);
+    rig.groups[0].hold(true);
+    EXPECT_FALSE(rig.view().held) << "nothing is interrupted";
+}
+
+// Whoever stops a group ends what it was interrupted in, while it still brakes for that and when it stands: nothing goes on behind a stop.
+TEST(GroupMotion, AHaltEndsWhatIsInterrupted) {
+    for (const bool stands : {true, false}) {
+        GroupRig rig(2);
+        rig.enable();
+        const auto move = rig.give(line({60, 80}, 100));
+        const auto waits = rig.give(line({60, 0}, 100, mcBuffered));
+        rig.run(300);
+        (void)rig.give(simply(GroupCommandKind::interrupt));
+        if (stands) ASSERT_TRUE(rig.until([&] { return rig.view().interrupted; }, 1000));
+        else rig.run(3);
+        rig.groups[0].halt();
+        EXPECT_EQ(rig.status(move.id), CommandStatus::aborted) << stands;
+        EXPECT_EQ(rig.status(waits.id), CommandStatus::aborted) << stands;
+        ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 1000)) << stands;
+        EXPECT_FALSE(rig.view().interrupted);
+        EXPECT_NEAR(rig.point()[1] * 3, rig.point()[0] * 4, 1e-9) << "on its way";
+        EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::nothing_interrupted);
+        ASSERT_EQ(rig.submit(line({0, 0}, 100)).error, ErrorId::none);
+    }
+}
+
 TEST(GroupMotion, AnInterruptedWayGoesOnFromWhereItStopped) {
     GroupRig rig(2);
     rig.enable();

@@ -67,10 +67,33 @@ TEST(GcodePath, ThePortalDrawsTheFile) {
     }
     EXPECT_LT(worst, 1e-9) << "on the programmed path at every set-point";
     EXPECT_EQ(next, corners.size()) << "each corner is stood at exactly: the direction or the curvature changes there";
-    EXPECT_EQ(rig.lines, (std::vector<std::uint32_t>{2, 3, 4, 5, 6, 7, 8, 9})) << "lines are shown as they are gone";
+    EXPECT_EQ(rig.lines, (std::vector<std::uint32_t>{2, 3, 4, 5, 6, 7, 8})) << "lines are shown as they are gone; M2 is the end of it";
+    EXPECT_EQ(rig.handshake.Line, 0u) << "nothing is carried out any more";
+    EXPECT_EQ(rig.handshake.FaultLine, 0u);
     EXPECT_GT(fastest, 45) << "F3000 is 50 mm/s";
     EXPECT_LT(fastest, 100 * std::sqrt(2.0) + 1e-6);
     EXPECT_EQ(rig.plc.rig.view().state, axes::GroupState::GroupStandby);
+}
+
+// Behind its end no line is carried out; where something else than its end ended it is told, without a fault of the text.
+TEST(GcodePath, AStopTellsTheLineItEndedAt) {
+    PathRig rig(contour);
+    ASSERT_TRUE(rig.begin());
+    ASSERT_TRUE(rig.plc.until([&] { return rig.handshake.Line == 4; }, 20000));
+    MC_GroupHalt halt;
+    halt.AxesGroup = rig.plc.group;
+    halt.Execute = true;
+    rig.extra = [&](const MotionContext& ctx) { halt(ctx); };
+    ASSERT_TRUE(rig.plc.until([&] { return halt.Done; }, 2000));
+    EXPECT_TRUE(rig.move.CommandAborted);
+    EXPECT_EQ(rig.handshake.Line, 0u);
+    EXPECT_EQ(rig.handshake.FaultLine, 4u);
+    EXPECT_EQ(rig.handshake.FaultID, axes::ErrorId::none);
+    rig.move.Execute = false;
+    rig.plc.run(2);
+    rig.extra = {};
+    ASSERT_TRUE(rig.run(20000));
+    EXPECT_EQ(rig.handshake.FaultLine, 0u) << "gone once more, to its end";
 }
 
 // G-070, G-071: whatever the override, and however often it changes, the set-points lie on the same path.

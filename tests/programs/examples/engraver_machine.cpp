@@ -134,5 +134,98 @@ TEST(Engraver, BehindAStopItWaitsForAPerson) {
     }
 }
 
+/// What a person does beside the program's own switches.
+struct Hand {
+    ExampleMachine& m;
+    runtime::Answer order(runtime::OperatorAction action) {
+        runtime::OperatorCommand command;
+        command.action = action;
+        command.index = 0;
+        return m.command(command).answer;
+    }
+    void set(const std::string& name, bool on) {
+        const auto& variables = m.machine().layout().variables;
+        for (std::size_t i = 0; i < variables.size(); ++i) {
+            if (variables[i].name != name) continue;
+            runtime::OperatorCommand command;
+            command.action = runtime::OperatorAction::set_value;
+            command.index = static_cast<std::uint16_t>(i);
+            command.value = on ? 1 : 0;
+            command.flag = true;
+            EXPECT_EQ(m.command(command).answer, runtime::Answer::accepted);
+        }
+    }
+    bool moves() { return m.axis("x").set_velocity != 0 || m.axis("y").set_velocity != 0 || m.axis("z").set_velocity != 0; }
+    const runtime::SeenGroup& group() { return m.snapshot().groups[0]; }
+};
+
+// The program holds by MC_GroupInterrupt, then a person interrupts, too: MC_GroupContinue does not go on behind him. When he lets it go the program does.
+TEST(Engraver, AProgramDoesNotGoOnBehindAPersonsInterruption) {
+    ExampleMachine m{"engraver"};
+    Hand hand{m};
+    ASSERT_TRUE(m.up());
+    m.world().set_input("spindle_turns", true);
+    ASSERT_TRUE(m.until([&] { return m.variable("line") > 15 && hand.moves(); }, 20s));
+    hand.set("holds", true);
+    ASSERT_TRUE(m.until([&] { return hand.group().interrupted; }, 2s));
+    EXPECT_FALSE(hand.group().held);
+    EXPECT_EQ(hand.order(runtime::OperatorAction::group_interrupt), runtime::Answer::accepted);
+    EXPECT_TRUE(m.until([&] { return hand.group().held; }, 100ms));
+    hand.set("holds", false);
+    const double stood = m.axis("x").set_position;
+    m.run(1s);
+    EXPECT_FALSE(hand.moves());
+    EXPECT_EQ(m.axis("x").set_position, stood);
+    EXPECT_TRUE(hand.group().interrupted);
+    EXPECT_EQ(m.variable("failed"), 0);
+
+    EXPECT_EQ(hand.order(runtime::OperatorAction::group_continue), runtime::Answer::accepted);
+    EXPECT_TRUE(m.until([&] { return hand.moves(); }, 1s));
+    EXPECT_TRUE(m.until([&] { return m.variable("plates") >= 1; }, 40s)) << m.alarms();
+}
+
+// The same while the program still holds: a person who lets go does not go on for it.
+TEST(Engraver, APersonWhoLetsGoLeavesTheProgramsInterruption) {
+    ExampleMachine m{"engraver"};
+    Hand hand{m};
+    ASSERT_TRUE(m.up());
+    m.world().set_input("spindle_turns", true);
+    ASSERT_TRUE(m.until([&] { return m.variable("line") > 15 && hand.moves(); }, 20s));
+    hand.set("holds", true);
+    ASSERT_TRUE(m.until([&] { return hand.group().interrupted; }, 2s));
+    EXPECT_EQ(hand.order(runtime::OperatorAction::group_interrupt), runtime::Answer::accepted);
+    EXPECT_EQ(hand.order(runtime::OperatorAction::group_continue), runtime::Answer::accepted);
+    m.run(1s);
+    EXPECT_FALSE(hand.moves());
+    EXPECT_TRUE(hand.group().interrupted);
+    EXPECT_FALSE(hand.group().held);
+    EXPECT_EQ(hand.order(runtime::OperatorAction::group_continue), runtime::Answer::refused_by_axis) << "it is the program's";
+    hand.set("holds", false);
+    EXPECT_TRUE(m.until([&] { return hand.moves(); }, 1s));
+}
+
+// A person stops it while its program holds it: MC_GroupContinue finds nothing to go on with.
+TEST(Engraver, AProgramDoesNotGoOnBehindAPersonsStop) {
+    for (const bool stands : {true, false}) {
+        ExampleMachine m{"engraver"};
+        Hand hand{m};
+        ASSERT_TRUE(m.up());
+        m.world().set_input("spindle_turns", true);
+        ASSERT_TRUE(m.until([&] { return m.variable("line") > 15 && hand.moves(); }, 20s));
+        hand.set("holds", true);
+        if (stands) ASSERT_TRUE(m.until([&] { return hand.group().interrupted; }, 2s));
+        else m.run(3ms);
+        EXPECT_EQ(hand.order(runtime::OperatorAction::group_halt), runtime::Answer::accepted);
+        m.run(1s);
+        hand.set("holds", false);
+        const double stood = m.axis("x").set_position;
+        m.run(2s);
+        EXPECT_FALSE(hand.moves()) << stands;
+        EXPECT_EQ(m.axis("x").set_position, stood) << stands;
+        EXPECT_FALSE(hand.group().interrupted);
+        EXPECT_EQ(m.variable("engraves"), 0) << "it waits for a person";
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::engraver_example

@@ -382,7 +382,17 @@ TEST(GroupSeen, OfAProgramsGroupAPersonMayOnlyHoldItBack) {
     late.index = 0;
     late.after = raised;
     EXPECT_EQ(s.m.command(late).answer, runtime::Answer::stale);
-    EXPECT_TRUE(s.seen().interrupted);
+    EXPECT_FALSE(s.seen().interrupted) << "a stop ends what is interrupted: a program could go on with it";
+}
+
+// Its program brings it to the slot by MC_MoveDirectAbsolute: joints in deg turn together, and their norm is no length. Along a line it is the tool's.
+TEST(GroupSeen, AWayOfJointsIsNoLength) {
+    Scara s;
+    ASSERT_TRUE(
+        s.m.until([&] { return s.seen().active_kind == axes::GroupCommandKind::direct_absolute && s.seen().along.velocity > 0; }, 20s));
+    EXPECT_EQ(s.group()["path_unit"], "u");
+    ASSERT_TRUE(s.until_it_draws());
+    EXPECT_EQ(s.group()["path_unit"], "mm");
 }
 
 // A member's drive fails in the middle: the group says why in words.
@@ -397,6 +407,7 @@ TEST(GroupSeen, AnErrorIsSaidInWords) {
     EXPECT_EQ(group["state"], "GroupErrorStop");
     EXPECT_EQ(group["error"], s.m.axis("elbow").error);
     EXPECT_EQ(group["error_name"], "drive_fault");
+    EXPECT_EQ(group["error_text"], "drive_fault of axis elbow");
     EXPECT_NE(group["error_remedy"], "");
 }
 

@@ -64,5 +64,38 @@ TEST(Scara, GivesTheSameBitsEachTime) {
     EXPECT_GT(first.laps, 0);
 }
 
+// A person stops it on its way to the slot or in a lap of it: it does not begin again by itself, and does when it is told to.
+TEST(Scara, BehindAStopItWaitsForAPerson) {
+    for (const bool in_a_lap : {true, false}) {
+        ExampleMachine m{"scara"};
+        ASSERT_TRUE(m.up());
+        const auto moves = [&] { return m.axis("shoulder").set_velocity != 0 || m.axis("elbow").set_velocity != 0; };
+        ASSERT_TRUE(m.until([&] { return m.variable("laps") >= (in_a_lap ? 1 : 0) && m.snapshot().groups[0].active != 0 && moves(); }, 20s));
+        m.run(30ms);
+        runtime::OperatorCommand halt;
+        halt.action = runtime::OperatorAction::group_halt;
+        halt.index = 0;
+        EXPECT_EQ(m.command(halt).answer, runtime::Answer::accepted);
+        m.run(1s);
+        const double stood = m.axis("shoulder").set_position;
+        m.run(2s);
+        EXPECT_EQ(m.axis("shoulder").set_position, stood) << in_a_lap;
+        EXPECT_EQ(m.variable("draws"), 0);
+        EXPECT_EQ(m.variable("failed"), 0) << "a stop is no failure";
+        const auto& variables = m.machine().layout().variables;
+        for (std::size_t i = 0; i < variables.size(); ++i) {
+            if (variables[i].name != "draws") continue;
+            runtime::OperatorCommand on;
+            on.action = runtime::OperatorAction::set_value;
+            on.index = static_cast<std::uint16_t>(i);
+            on.value = 1;
+            on.flag = true;
+            EXPECT_EQ(m.command(on).answer, runtime::Answer::accepted);
+        }
+        const double laps = m.variable("laps");
+        EXPECT_TRUE(m.until([&] { return m.variable("laps") > laps; }, 20s)) << m.alarms();
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::scara_example

@@ -143,14 +143,26 @@ export function group_page(desk: Desk, [wanted = '']: readonly string[]): Page {
     };
 }
 
+/** Several axes go together: the measure of their way is the norm of their numbers, which is no length. */
+function is_of_axes(group: GroupState): boolean {
+    return group.path_unit === 'u' && group.unit !== 'u';
+}
+
+/** Of a way of several axes its share. */
+export function left_to_go(group: GroupState): string {
+    const left = value(group.remaining_s);
+    const way = is_of_axes(group) ? `${fixed((1 - value(group.progress)) * 100, 0)} %` : `${fixed(group.distance_to_go, 1)} ${group.path_unit ?? group.unit}`;
+    return left > 0 ? `${way}, ${duration(left)}` : way;
+}
+
 function write_facts(facts: Values, group: GroupState): void {
     const speed = `${group.unit}/s`, path_unit = group.path_unit ?? group.unit;
     facts.set('command', group.command ? `${group.command}${group.block ? ` (${group.block})` : ''}` : '–');
-    const left = value(group.remaining_s);
-    facts.set('group_to_go', group.command ? `${fixed(group.distance_to_go, 1)} ${path_unit}${left > 0 ? `, ${duration(left)}` : ''}` : '–');
+    facts.set('group_to_go', group.command ? left_to_go(group) : '–');
     facts.set('group_waiting', String(group.queued));
     facts.set('group_tool_speed', group.tool_known ? `${fixed(group.tool_actual_speed, 1)} ${speed}` : '–');
-    facts.set('group_path_velocity', `${fixed(group.path_velocity, 1)} ${path_unit}/s`);
+    const along = `${fixed(group.path_velocity, 1)} ${path_unit}/s`;
+    facts.set('group_path_velocity', is_of_axes(group) ? say('group_of_its_axes', { velocity: along }) : along);
     facts.set('group_limited', held_back(group));
     facts.set('group_track', goes_with(group) || '–');
     facts.set('group_deviation', group.tool_known ? `${fixed(group.path_deviation ?? 0)} ${group.unit}` : '–');

@@ -66,6 +66,10 @@ export const refusals: Readonly<Record<string, string>> = {
     '{} was ended: the axis went into ErrorStop ({})': '{} 被终止：轴进入故障停止（{}）',
     '{} was ended by the axis itself, which is {} now': '{} 被轴自身终止，轴现在的状态为 {}',
     '{} was ended: the group went into GroupErrorStop ({})': '{} 被终止：轴组进入故障停止（{}）',
+    '{} was ended by the group itself': '{} 被轴组自身终止',
+    'A person has stopped the group: give the command again when it may go on': '人员已停止轴组：可以继续时重新发出命令',
+    'Two programs command this group: let one of them do it': '两个程序同时控制该轴组：只让其中一个控制',
+    'A person has stopped it, or the mode or the owner of its axes has changed: see what stands beside this in the log': '人员已将其停止，或其各轴的模式或控制方已改变：查看日志中相邻的记录',
     '{} was ended: {}': '{} 被终止：{}',
     '{} was refused with error {}': '{} 被拒绝，错误 {}',
     '{} was refused: {}': '{} 被拒绝：{}',
@@ -258,4 +262,7 @@ export const refusals: Readonly<Record<string, string>> = {
     'limited to {} by the limit of the axis': '被轴的限值限制为 {}',
     'limited to {} by manual mode': '被手动模式限制为 {}',
     'limited to {} by setup mode': '被调试模式限制为 {}',
+    // Whose an error of a group is (hmi_bridge/state/whole_group.cpp). Last: other sentences have these words, too.
+    '{}, namely axis {}': '{}，即轴 {}',
+    '{} of axis {}': '轴 {1} 的 {0}',
 };

@@ -30,6 +30,7 @@ export const group = {
     group_frame_moves: ['{name}, with {axis}', '{name},随 {axis} 移动'],
     group_doing: ['Doing', '正在执行'],
     group_to_go: ['To go', '剩余'],
+    group_of_its_axes: ['{velocity} of its axes together', '{velocity}（各轴合成）'],
     group_waiting: ['Commands that wait', '等待指令数'],
     group_programs_override: ['Override of the program', '程序倍率'],
     group_velocity_use: ['Velocity', '速度'],
