@@ -125,6 +125,11 @@ function(taktwerk_test_headers target folder)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
+# Seconds of those that take long, so that a clone that has never run them begins with them, and above all with the one that runs alone: it would wait for
+# the last of the others otherwise, and they for it. Where they have run, CTest knows by itself.
+set(TAKTWERK_LONG_TESTS apps_alone_machine 1000 apps_machine 150 axes_group_property 90 programs_examples_machine 80 whole_machine_property 60 apps_unit 55
+  axes_axis_property 45 architecture_unit 38 runtime_machine 31 programs_machine 31 axes_axis_unit 29 ecat_machine 27 apps_lcm_machine 25 hmi_bridge_web_unit 25)
+
 # tests/<folder>/*_<kind>.cpp -> binary <folder>_<kind> with CTest label <kind>.
 function(taktwerk_tests folder)
   if(NOT TAKTWERK_TESTS)
@@ -150,6 +155,12 @@ function(taktwerk_tests folder)
         set(patience 900)  # a sanitized machine takes several times as long
       endif()
       set_tests_properties(${binary} PROPERTIES LABELS ${kind} TIMEOUT ${patience})
+      list(FIND TAKTWERK_LONG_TESTS ${binary} place)
+      if(place GREATER_EQUAL 0)
+        math(EXPR place "${place} + 1")
+        list(GET TAKTWERK_LONG_TESTS ${place} seconds)
+        set_tests_properties(${binary} PROPERTIES COST ${seconds})
+      endif()
     endif()
   endforeach()
 endfunction()
