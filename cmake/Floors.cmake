@@ -40,9 +40,24 @@ function(taktwerk_compile_together target files)
   endif()
 endfunction()
 
+# Where only some libraries are to be sanitized, the others come ready from a build without (`./dev ci`; preset ci_asan).
+set(TAKTWERK_BORROW_FROM "" CACHE PATH "build, made before, whose libraries are taken for TAKTWERK_BORROW")
+set(TAKTWERK_BORROW "" CACHE STRING "folders whose libraries are taken from there, e.g. axes/path;fb_library/iec")
+
 function(taktwerk_library folder)
   cmake_parse_arguments(ARG "SINGLE" "" "DEPENDS" ${ARGN})
   taktwerk_target_name(${folder} target)
+  string(REPLACE ";" " " line "${folder};${ARG_DEPENDS}")
+  set_property(GLOBAL APPEND PROPERTY TAKTWERK_FOLDERS "${line}")
+  if(TAKTWERK_BORROW_FROM AND folder IN_LIST TAKTWERK_BORROW)
+    string(REGEX REPLACE "/.*" "" floor "${folder}")
+    add_library(${target} STATIC IMPORTED GLOBAL)
+    set_target_properties(${target} PROPERTIES IMPORTED_LOCATION "${TAKTWERK_BORROW_FROM}/${floor}/lib${target}.a" SYSTEM OFF)
+    target_include_directories(${target} INTERFACE "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(${target} INTERFACE taktwerk_build_options)
+    taktwerk_link(${target} INTERFACE ${ARG_DEPENDS})
+    return()
+  endif()
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
   if(sources)
     set(visibility PUBLIC)
@@ -57,14 +72,12 @@ function(taktwerk_library folder)
   target_include_directories(${target} ${visibility} "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} ${visibility} taktwerk_build_options)
   taktwerk_link(${target} ${visibility} ${ARG_DEPENDS})
-  string(REPLACE ";" " " line "${folder};${ARG_DEPENDS}")
-  set_property(GLOBAL APPEND PROPERTY TAKTWERK_FOLDERS "${line}")
 endfunction()
 
 # For a folder that reads and writes text and computes little: with sanitizers the optimiser takes half as long again as the rest of the
 # compiler, and what it saves when the tests run is less.
 function(taktwerk_unoptimised_when_sanitized folder)
-  if(TAKTWERK_SANITIZE AND NOT TAKTWERK_FUZZ)  # there it runs for hours
+  if(TAKTWERK_SANITIZE AND NOT TAKTWERK_FUZZ AND NOT folder IN_LIST TAKTWERK_BORROW)  # fuzz targets run for hours
     taktwerk_target_name(${folder} target)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O0>)
   endif()
