@@ -40,9 +40,24 @@ function(taktwerk_compile_together target files)
   endif()
 endfunction()
 
+# Where only some libraries are to be sanitized, the others come ready from a build without (`./dev ci`; preset ci_asan).
+set(TAKTWERK_BORROW_FROM "" CACHE PATH "build, made before, whose libraries are taken for TAKTWERK_BORROW")
+set(TAKTWERK_BORROW "" CACHE STRING "folders whose libraries are taken from there, e.g. axes/path;fb_library/iec")
+
 function(taktwerk_library folder)
   cmake_parse_arguments(ARG "SINGLE" "" "DEPENDS" ${ARGN})
   taktwerk_target_name(${folder} target)
+  string(REPLACE ";" " " line "${folder};${ARG_DEPENDS}")
+  set_property(GLOBAL APPEND PROPERTY TAKTWERK_FOLDERS "${line}")
+  if(TAKTWERK_BORROW_FROM AND folder IN_LIST TAKTWERK_BORROW)
+    string(REGEX REPLACE "/.*" "" floor "${folder}")
+    add_library(${target} STATIC IMPORTED GLOBAL)
+    set_target_properties(${target} PROPERTIES IMPORTED_LOCATION "${TAKTWERK_BORROW_FROM}/${floor}/lib${target}.a" SYSTEM OFF)
+    target_include_directories(${target} INTERFACE "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(${target} INTERFACE taktwerk_build_options)
+    taktwerk_link(${target} INTERFACE ${ARG_DEPENDS})
+    return()
+  endif()
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
   if(sources)
     set(visibility PUBLIC)
@@ -57,14 +72,12 @@ function(taktwerk_library folder)
   target_include_directories(${target} ${visibility} "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${target} ${visibility} taktwerk_build_options)
   taktwerk_link(${target} ${visibility} ${ARG_DEPENDS})
-  string(REPLACE ";" " " line "${folder};${ARG_DEPENDS}")
-  set_property(GLOBAL APPEND PROPERTY TAKTWERK_FOLDERS "${line}")
 endfunction()
 
 # For a folder that reads and writes text and computes little: with sanitizers the optimiser takes half as long again as the rest of the
 # compiler, and what it saves when the tests run is less.
 function(taktwerk_unoptimised_when_sanitized folder)
-  if(TAKTWERK_SANITIZE AND NOT TAKTWERK_FUZZ)  # there it runs for hours
+  if(TAKTWERK_SANITIZE AND NOT TAKTWERK_FUZZ AND NOT folder IN_LIST TAKTWERK_BORROW)  # fuzz targets run for hours
     taktwerk_target_name(${folder} target)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Debug>:-O0>)
   endif()
@@ -125,6 +138,11 @@ function(taktwerk_test_headers target folder)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
+# Seconds of those that take long, so that a clone that has never run them begins with them, and above all with the one that runs alone: it would wait for
+# the last of the others otherwise, and they for it. Where they have run, CTest knows by itself.
+set(TAKTWERK_LONG_TESTS apps_alone_machine 1000 apps_machine 150 axes_group_property 90 programs_examples_machine 80 whole_machine_property 60 apps_unit 55
+  axes_axis_property 45 architecture_unit 38 runtime_machine 31 programs_machine 31 axes_axis_unit 29 ecat_machine 27 apps_lcm_machine 25 hmi_bridge_web_unit 25)
+
 # tests/<folder>/*_<kind>.cpp -> binary <folder>_<kind> with CTest label <kind>.
 function(taktwerk_tests folder)
   if(NOT TAKTWERK_TESTS)
@@ -150,6 +168,12 @@ function(taktwerk_tests folder)
         set(patience 900)  # a sanitized machine takes several times as long
       endif()
       set_tests_properties(${binary} PROPERTIES LABELS ${kind} TIMEOUT ${patience})
+      list(FIND TAKTWERK_LONG_TESTS ${binary} place)
+      if(place GREATER_EQUAL 0)
+        math(EXPR place "${place} + 1")
+        list(GET TAKTWERK_LONG_TESTS ${place} seconds)
+        set_tests_properties(${binary} PROPERTIES COST ${seconds})
+      endif()
     endif()
   endforeach()
 endfunction()

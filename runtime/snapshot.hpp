@@ -157,7 +157,7 @@ struct MachineLayout {
         std::vector<std::uint16_t> members;  ///< axes as configured, by place; a program may change them
         bool arm = false;                    ///< has kinematics: its tool has a place in the machine
         std::array<bool, 6> commands{};      ///< which of X Y Z RX RY RZ the arm commands
-        double setup_velocity = 0;  ///< u/s: of the tool's point in set-up mode at most, and of a person's jog of it; 0: no arm
+        double setup_velocity = 0;           ///< u/s: of the tool's point in set-up mode at most, and of a person's jog of it; 0: no arm
         struct Room {
             std::string name;
             bool kept_free = false;

@@ -1,22 +1,21 @@
 // The built command on its own threads, and everything around it that may stand in the way of its end: a terminal or a pipe that takes
-// nothing, a disk that is full or hangs, signals, programs that never return or crash (docs/stopping.md). All waits are bounded, and
-// wide: that an end comes at all is what counts here; the cycles are counted in tests/hmi_bridge/stopping_machine.cpp.
+// nothing, a disk that is full or hangs, signals, programs that crash (docs/stopping.md; those that never return:
+// alone/hung_program_machine.cpp). All waits are bounded, and wide: that an end comes at all is what counts here; the cycles are counted
+// in tests/hmi_bridge/stopping_machine.cpp.
 
 #include <sys/stat.h>
 
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/line_writer.hpp"
-#include "hmi_bridge/socket/client.hpp"
 #include "tests/apps/child.hpp"
 #include "tests/apps/machine_files.hpp"
+#include "tests/apps/stopping.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -55,94 +54,6 @@ public:
 private:
     std::string path_;
     int end_ = -1;
-};
-
-class Stopping : public ::testing::Test {
-protected:
-    Stopping() {
-        std::filesystem::create_directories(folder / "machines");
-        std::filesystem::create_directory_symlink(source / "config/drives", folder / "drives");
-    }
-    ~Stopping() override {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder, ignored);
-    }
-    static std::string new_folder() {
-        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-stopping-XXXXXX").string();
-        return ::mkdtemp(pattern.data());
-    }
-    /// minimal.yaml with a socket of its own and `more`.
-    std::string machine(const std::string& more = "") {
-        std::ostringstream text;
-        text << std::ifstream(source / "config/machines/minimal.yaml").rdbuf();
-        auto file = (folder / "machines/stopping.yaml").string();
-        std::ofstream(file) << text.str() << "hmi: { socket: '" << socket
-                            << "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n"
-                            << more;
-        return file;
-    }
-    /// With an absolute encoder.
-    std::string absolute() {
-        auto file = machine();
-        std::ostringstream text;
-        text << std::ifstream(file).rdbuf();
-        auto changed = text.str();
-        const std::string homing = "    homing: { kind: set_here }\n";
-        changed.replace(changed.find(homing), homing.size(), homing + "    position_memory: { absolute: true }\n");
-        std::ofstream(file) << changed;
-        return file;
-    }
-    /// With the program that dies.
-    std::string dying(int how, int every = 1) {
-        return machine("start_mode: automatic\nprograms:\n  dying:\n    library: " + std::string(TAKTWERK_BINARY_DIR) +
-                       "/tests/dying_program.so\n    autostart: true\n    parameters: { how: " + std::to_string(how) +
-                       " }\n    tasks:\n      main: { every: " + std::to_string(every) + " cycles }\n");
-    }
-    std::optional<nlohmann::ordered_json> ask(nlohmann::json request) {
-        auto client = hmi::Client::connect(socket);
-        if (!client) return std::nullopt;
-        auto answer = client->request(std::move(request), 5s);
-        if (!answer) {
-            refused = answer.error();
-            return std::nullopt;
-        }
-        return *answer;
-    }
-    bool until(const std::function<bool()>& condition, std::chrono::milliseconds patience = 30s) {
-        const auto end = std::chrono::steady_clock::now() + patience;
-        while (!condition()) {
-            if (std::chrono::steady_clock::now() > end) return false;
-            ::poll(nullptr, 0, 20);
-        }
-        return true;
-    }
-    bool runs() {
-        return until([&] {
-            const auto state = ask({{"cmd", "state"}});
-            return state && (*state)["state"]["phase"] == "running";
-        });
-    }
-    /// x moves; false: it never did. A homed axis in manual mode.
-    bool moves() {
-        const auto powered = [&] {
-            const auto state = ask({{"cmd", "state"}});
-            return state && (*state)["state"]["axes"][0]["powered"] == true;
-        };
-        if (!ask({{"cmd", "enable"}, {"axis", "x"}}) || !until(powered)) return false;
-        if (!ask({{"cmd", "home"}, {"axis", "x"}})) return false;
-        return until([&] {
-                   return ask({{"cmd", "move"}, {"axis", "x"}, {"position", 100000}, {"velocity", 20}}).has_value();
-               }) &&
-               until([&] { return velocity() > 19; });
-    }
-    double velocity() {
-        const auto state = ask({{"cmd", "state"}});
-        return state ? (*state)["state"]["axes"][0]["set_velocity"].get<double>() : -1;
-    }
-
-    std::filesystem::path folder = new_folder();
-    std::string socket = (folder / "socket").string();
-    Error refused;
 };
 
 // --- where lines and files go ------------------------------------------------------------------------------------------------------------
@@ -262,54 +173,7 @@ TEST_F(Stopping, PositionsOnADiskThatTakesNothingHoldUpNeitherTheAxesNorTheBusAn
     EXPECT_THAT(run.text(), ::testing::Not(HasSubstr("Mend that program"))) << "no program is to blame";
 }
 
-// --- what never returns, and what crashes ------------------------------------------------------------------------------------------------
-
-TEST_F(Stopping, AnEndlessLoopInABaseTaskIsNamedToEveryClientAndEndsInThePromisedTime) {
-    Child run({taktwerk, "run", dying(2)});
-    EXPECT_TRUE(run.says("task 'main' of program 'dying' does not return", 60s)) << run.text();
-    const auto hello = ask({{"cmd", "hello"}});
-    ASSERT_TRUE(hello) << refused.text();
-    EXPECT_EQ((*hello)["hello"]["cycling"], false);
-    EXPECT_FALSE(ask({{"cmd", "state"}})) << "frozen values are not shown as if they lived";
-    EXPECT_EQ(refused.code, "state.stuck");
-    EXPECT_THAT(refused.what, HasSubstr("'dying'"));
-    EXPECT_FALSE(ask({{"cmd", "stop"}})) << "nobody may believe that it stops";
-    EXPECT_EQ(refused.code, "command.no_answer");
-    EXPECT_FALSE(ask({{"cmd", "shutdown"}}));
-    EXPECT_EQ(refused.code, "command.no_answer");
-    EXPECT_EQ(run.wait(30s), exit_hung) << run.text();
-    EXPECT_THAT(run.text(), HasSubstr("was told to end and cannot"));
-}
-
-// A hung cycle holds its processor at its priority, and the kernel leaves ordinary threads alone a share of it (sched(7)): so whoever tells it and ends
-// the process may have no real-time priority below the cycle's.
-TEST_F(Stopping, OnOneProcessorAnEndlessLoopInABaseTaskIsToldAndEndsAsWell) {
-    Child run({"taskset", "-c", "0", taktwerk, "run", dying(2)});
-    EXPECT_TRUE(run.says("STUCK", 60s)) << run.text();
-    run.signal(SIGTERM);
-    EXPECT_EQ(run.wait(60s), exit_hung) << run.text();
-}
-
-TEST_F(Stopping, AnEndlessSlowerTaskDoesNotOutliveTheEnd) {
-    Child run({taktwerk, "run", dying(2, 4)});
-    ASSERT_TRUE(run.says("not finished at its next release", 60s)) << run.text();
-    EXPECT_TRUE(run.says("-> Disabled", 30s)) << "its axis stops, and its power goes: " << run.text();
-    const auto state = ask({{"cmd", "state"}});
-    ASSERT_TRUE(state) << "the machine lives: " << refused.text();
-    EXPECT_THAT(state->dump(), HasSubstr("task_late"));
-    EXPECT_TRUE(ask({{"cmd", "reset"}})) << refused.text();
-    EXPECT_FALSE(ask({{"cmd", "program_start"}, {"program", "dying"}}));
-    EXPECT_THAT(refused.what, HasSubstr("has not come back")) << refused.text();
-    run.signal(SIGTERM);
-    EXPECT_EQ(run.wait(40s), exit_hung) << run.text();
-    EXPECT_THAT(run.text(), HasSubstr("task 'main' of program 'dying' does not return"));
-
-    Child again({taktwerk, "run", dying(0, 4)});
-    EXPECT_TRUE(again.says("this one begins in manual mode", 60s)) << "behind a run that hung: " << again.text();
-    EXPECT_TRUE(again.says("running, manual mode", 60s)) << "the next run gets the bus: " << again.text();
-    again.signal(SIGTERM);
-    EXPECT_EQ(again.wait(40s), exit_ok) << again.text();
-}
+// --- what crashes ------------------------------------------------------------------------------------------------------------------------
 
 struct Crash {
     const char* name;

@@ -59,7 +59,8 @@ void try_bundle(const std::string& text) {
     const Bytes bytes(text);
     if (const auto container = read_container(bytes, "fuzz"))
         for (const auto& file : container->files) {
-            if (!is_packed_path(file.path) || file.path.front() == '/' || file.path.find("..") == 0 || !seen.insert(file.path).second) std::abort();
+            if (!is_packed_path(file.path) || file.path.front() == '/' || file.path.find("..") == 0 || !seen.insert(file.path).second)
+                std::abort();
             if (file.offset > text.size() || file.size > text.size() - file.offset) std::abort();
         }
     const auto bundle = BundleFile::read(std::make_unique<Bytes>(text), "fuzz", Trust({}));

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <numeric>
 
 #include "tests/axes/group/moving_world.hpp"
+#include "tests/property_cases.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -16,12 +18,11 @@ constexpr AxisLimits calm_master{.velocity = 100, .acceleration = 250, .decelera
 class MovingWorlds : public testing::TestWithParam<JogArm> {};
 std::string name_of(const testing::TestParamInfo<JogArm>& info) { return info.param.name; }
 
-/// TAKTWERK_CASES: how many; TAKTWERK_SEED: that one alone.
+/// TAKTWERK_SEED: that one alone.
 std::vector<std::uint32_t> seeds() {
     if (const char* one = std::getenv("TAKTWERK_SEED")) return {static_cast<std::uint32_t>(std::atoi(one))};
-    const char* more = std::getenv("TAKTWERK_CASES");
-    std::vector<std::uint32_t> all;
-    for (int i = 1; i <= (more != nullptr ? std::max(2, std::atoi(more)) : 2); ++i) all.push_back(static_cast<std::uint32_t>(i));
+    std::vector<std::uint32_t> all(property_cases(2));
+    std::iota(all.begin(), all.end(), 1);
     return all;
 }
 

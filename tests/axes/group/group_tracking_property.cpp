@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/axes/group/track_rig.hpp"
+#include "tests/property_cases.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -82,19 +83,16 @@ struct Walk {
     std::size_t compared = 0;
 };
 
-int walks() {
-    const char* more = std::getenv("TAKTWERK_CASES");
-    return more != nullptr ? std::max(1, std::atoi(more)) : 6;
-}
+std::size_t walks() { return property_cases(6); }
 
 // G-083, G-086, G-088: of straight axes all of it is promised: a belt of 45 u/s and 250 u/s2 with half of their jerk while the group joins
 // it is inside the frame's half of each, and there is no error.
 TEST(GroupTrackingProperty, ABeltWithItsMoodsAndStraightAxes) {
     std::size_t compared = 0;
-    for (int seed = 1; seed <= walks(); ++seed) {
+    for (std::uint32_t seed = 1; seed <= walks(); ++seed) {
         SCOPED_TRACE(seed);
         TrackRig rig(3, cartesian_arm(), belt_axis({.velocity = 100, .acceleration = 250, .deceleration = 250, .jerk = 1000}));
-        Walk walk(rig, static_cast<std::uint32_t>(seed), 45, {20, -10, 0, 0, 0, 0.7}, -0.7);
+        Walk walk(rig, seed, 45, {20, -10, 0, 0, 0, 0.7}, -0.7);
         for (int i = 0; i < 6000; ++i) {
             walk.deed();
             ASSERT_NE(rig.view().state, GroupState::GroupErrorStop) << rig.view().error;
@@ -114,13 +112,12 @@ TEST(GroupTrackingProperty, ABeltWithItsMoodsAndAScara) {
     const AxisLimits lifting{.velocity = 200, .acceleration = 2000, .deceleration = 2000, .jerk = 40000};
     std::size_t compared = 0;
     int errors = 0;
-    for (int seed = 1; seed <= walks(); ++seed) {
+    for (std::uint32_t seed = 1; seed <= walks(); ++seed) {
         SCOPED_TRACE(seed);
         TrackRig rig({group_axis("a1", turning), group_axis("a2", turning), group_axis("z", lifting), group_axis("a4", turning)}, arm);
         const auto ready = rig.give({.kind = GroupCommandKind::direct_absolute, .target = {-30, 80, 0, 20}});
         ASSERT_TRUE(rig.done(ready.id));
-        Walk walk(rig, static_cast<std::uint32_t>(seed), 80, {250, 60, 0, 0, 0, std::numbers::pi / 2},
-                  70 * std::numbers::pi / 180 - std::numbers::pi / 2);
+        Walk walk(rig, seed, 80, {250, 60, 0, 0, 0, std::numbers::pi / 2}, 70 * std::numbers::pi / 180 - std::numbers::pi / 2);
         walk.rough = true;
         walk.home = {-30, 80, 0, 20};
         auto last = rig.view().state;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <numeric>
 
 #include "tests/fb_library/gcode_path/driven_world.hpp"
+#include "tests/property_cases.hpp"
 
 namespace taktwerk::fb {
 namespace {
@@ -15,9 +17,8 @@ std::string name_of(const testing::TestParamInfo<JogArm>& info) { return info.pa
 
 std::vector<std::uint32_t> seeds() {
     if (const char* one = std::getenv("TAKTWERK_SEED")) return {static_cast<std::uint32_t>(std::atoi(one))};
-    const char* more = std::getenv("TAKTWERK_CASES");
-    std::vector<std::uint32_t> all;
-    for (int i = 1; i <= (more != nullptr ? std::max(5, std::atoi(more)) : 5); ++i) all.push_back(static_cast<std::uint32_t>(i));
+    std::vector<std::uint32_t> all(property_cases(5));
+    std::iota(all.begin(), all.end(), 1);
     return all;
 }
 

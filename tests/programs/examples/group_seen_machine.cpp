@@ -125,10 +125,14 @@ TEST(GroupSeen, TheToolIsToldFromEachFrameThatSomebodySet) {
             if (one["frame"] == name) return one;
         return Json{};
     };
-    int in_step = 0, behind = 0, compared = 0;
+    int in_step = 0, behind = 0, compared = 0, cycle = 0;
     double before = 0;
     bool was_in_step = false;
+    // To read the whole state's text takes ten times what the cycle does: two cycles in succession are looked at, of each eight.
     m.each_cycle = [&] {
+        const int place = cycle++ % 8;
+        if (place > 1) return;
+        was_in_step = was_in_step && place == 1;
         const auto now = group();
         ASSERT_EQ(now["tool_known"], true);
         for (const char* of : {"tool_set", "tool_actual"}) {

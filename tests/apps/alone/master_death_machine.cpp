@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/apps/cable.hpp"
+#include "tests/apps/alone/cable.hpp"
 #include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {

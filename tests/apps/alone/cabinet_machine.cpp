@@ -12,7 +12,7 @@
 
 #include "apps/machine/load.hpp"
 #include "apps/terminal/exit_code.hpp"
-#include "tests/apps/cable.hpp"
+#include "tests/apps/alone/cable.hpp"
 #include "tests/apps/in_process.hpp"
 #include "tests/apps/machine_files.hpp"
 #include "tests/runtime/test_machine.hpp"

@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/terminal/exit_code.hpp"
-#include "tests/apps/cable.hpp"
+#include "tests/apps/alone/cable.hpp"
 #include "tests/apps/gauge_files.hpp"
 #include "tests/apps/machine_files.hpp"
 

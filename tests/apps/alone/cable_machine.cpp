@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/terminal/exit_code.hpp"
-#include "tests/apps/cable.hpp"
+#include "tests/apps/alone/cable.hpp"
 #include "tests/apps/machine_files.hpp"
 #include "tests/ecat/wire/captures.hpp"
 
