@@ -50,6 +50,23 @@ TEST(RunPlan, LineOfOneAxisAgainstTheAxisPlanner) {
     }
 }
 
+// Cells of a run that goes on are as long as suits the run. The first one's v2 is given by the state that it begins with: were it as long, one who still speeds up would be
+// carried above a lowered velocity by the cell alone (here from 34 u/s to 78, with 36 wanted).
+TEST(RunPlan, AFirstCellCarriesNobodyAboveALoweredVelocity) {
+    const Path path = line_path(10'000, 0, {150, 1000, 1000, 10'000});
+    const PathCurve curve(path, 1);
+    CellGrid grid;
+    RunTask task;
+    task.from = 100;
+    task.to = path.length();
+    task.velocity = 34;
+    task.acceleration = 6;
+    task.velocity_factor = 0.24;
+    grid.make(curve, std::vector<PathAxisLimits>{{1e3, 1000, 10'000}}, task, CellGrid::Grain::coarse);
+    const double square = task.velocity * task.velocity, behind = square + 2 * task.acceleration * (grid.nodes[1] - grid.nodes[0]);
+    EXPECT_LT(std::sqrt(behind), 1.02 * task.velocity);
+}
+
 // Minutes to a day: every limit holds in every piece, the plan fits into a stretch, costs no more cells than a short one, and the ramps are as quick as
 // without a cruise between them. By hand: 5 u/s with 10,000 u/s3 are come to in 2 sqrt(5/10,000) = 0.045 s.
 TEST(RunPlan, LongRunsKeepEveryLimitAndCostNoMore) {
