@@ -40,7 +40,7 @@ function(taktwerk_compile_together target files)
   endif()
 endfunction()
 
-# Where only some libraries are to be sanitized, the others come ready from a build without (`./dev ci`; preset ci_asan).
+# Where only some libraries are to be sanitized, the others come ready from a build without (`./dev ci`; presets ci_asan and ci_tsan).
 set(TAKTWERK_BORROW_FROM "" CACHE PATH "build, made before, whose libraries are taken for TAKTWERK_BORROW")
 set(TAKTWERK_BORROW "" CACHE STRING "folders whose libraries are taken from there, e.g. axes/path;fb_library/iec")
 
@@ -99,6 +99,14 @@ endfunction()
 # uses. GoogleMock is a third of a test's compile time; CLI11 and JSON were half of a command's.
 function(taktwerk_parse_once target)
   target_precompile_headers(${target} PRIVATE ${ARGN})
+endfunction()
+
+# The library of a folder shares what another target has parsed.
+function(taktwerk_parsed_with folder owner)
+  if(NOT folder IN_LIST TAKTWERK_BORROW)
+    taktwerk_target_name(${folder} target)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
 endfunction()
 
 # What tests of a part of the tree have in common beside GoogleMock: half of the compile time of those above the axes.
