@@ -106,7 +106,7 @@ Halted halted(const ArmProgram& program, double part, int points_a_cycle) {
     return halt;
 }
 
-// Disabled: a try costs some 5 ms, seven to fifteen follow each other before one is offered, and by then its border has been passed. What begins then with twice the lead begins
+// Disabled: a try costs some 5 ms, up to fifteen follow each other before one is offered, and by then its border has been passed. What begins then with twice the lead begins
 // its search with the same tries.
 TEST(HaltAtItsCost, DISABLED_IsHardlyLongerThanThatOfAPlannerForNothing) {
     constexpr double most_later = 0.03;  // s

@@ -1,5 +1,5 @@
-// An override that is lowered on a straight line, where braking is known in closed form: nothing bends, so nothing may take longer than that, stand, or be below. Axes that brake for
-// seconds and have their deceleration within milliseconds are among them. G-070, docs/motion/path.md (from a moving state).
+// An override that is lowered on a straight line, where braking is known in closed form: nothing bends, so nothing may take longer than that, stand, or be below. Axes that brake
+// for seconds and have their deceleration within milliseconds are among them. G-070, docs/motion/path.md (from a moving state).
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double full = 100;  // u/s
+constexpr double full_velocity = 100;  // u/s
 
 struct Lowered {
     double braking = 0;       // s, that it takes with all of the limits
@@ -24,47 +24,47 @@ struct Lowered {
     std::uint32_t tries = 0;  // from the wish on
 };
 
-/// `stopping` [s] from full velocity to rest, `ramp` [s] until the deceleration is there; told at this part of the line, which is ten times as long as braking.
+/// `stopping` [s] from full_velocity velocity to rest, `ramp` [s] until the deceleration is there; told at this part of the line, which is ten times as long as braking.
 Lowered lowered(double stopping, double ramp, double factor, double part) {
-    const double deceleration = full / stopping, jerk = deceleration / ramp;
+    const double deceleration = full_velocity / stopping, most_jerk = deceleration / ramp;
     PathVector to = PathVector::Zero();
-    to[0] = 10 * full * (stopping + ramp) / 2;
+    to[0] = 10 * full_velocity * (stopping + ramp) / 2;
     PathMove move;
     move.element = PathElement::line(PathVector::Zero(), to);
-    move.feed = {full, deceleration, deceleration, jerk};
+    move.feed = {full_velocity, deceleration, deceleration, most_jerk};
     Path path;
     EXPECT_TRUE(path.append(move, {}).ok());
     const PathCurve curve(path, 1);
     const auto exchange = std::make_unique<StretchExchange>();
     PathPlayer player(*exchange);
-    PathService service({{10 * full, deceleration, jerk}}, *exchange, 0.02);
+    PathService service({{10 * full_velocity, deceleration, most_jerk}}, *exchange, 0.02);
     PathWish wish;
-    long cycle = 0;
+    long cycles = 0;
     const auto step = [&] {
-        if (cycle++ % 5 == 0) (void)service.step(curve, path.length(), wish);
+        if (cycles++ % 5 == 0) (void)service.step(curve, path.length(), wish);
         (void)player.step(1e-3);
     };
-    while (player.now().s < part * path.length() && cycle < 1'000'000) step();
+    while (player.now().s < part * path.length() && cycles < 1'000'000) step();
     Lowered found;
     const double v = player.now().velocity, a = std::max(player.now().acceleration, 0.0);
-    EXPECT_GT(v, factor * full);
+    EXPECT_GT(v, factor * full_velocity);
     // What acceleration there is goes first, and what is gained meanwhile has to be braked too.
-    found.braking = (v + a * a / (2 * jerk) - factor * full) / deceleration + ramp + a / jerk;
+    found.braking = (v + a * a / (2 * most_jerk) - factor * full_velocity) / deceleration + ramp + a / most_jerk;
     const auto tries = service.tries();
     wish.velocity_factor = factor;
-    for (long told = cycle; cycle - told < 1000 * (6 * found.braking + 2);) {
+    for (long told = cycles; static_cast<double>(cycles - told) < 1000 * (6 * found.braking + 2);) {
         step();
-        const double part_of_wanted = player.now().velocity / (factor * full);
-        if (found.obeyed < 0 && part_of_wanted <= 1.02) found.obeyed = static_cast<double>(cycle - told) * 1e-3;
+        const double part_of_wanted = player.now().velocity / (factor * full_velocity);
+        if (found.obeyed < 0 && part_of_wanted <= 1.02) found.obeyed = static_cast<double>(cycles - told) * 1e-3;
         found.stood = found.stood || (player.now().velocity == 0 && player.now().s < path.length() * (1 - 1e-9));
         if (player.now().s < 0.98 * path.length()) found.least = std::min(found.least, part_of_wanted);
-        if (found.obeyed >= 0 && static_cast<double>(cycle - told) > 1e3 * (found.obeyed + 2)) break;
+        if (found.obeyed >= 0 && static_cast<double>(cycles - told) > 1e3 * (found.obeyed + 2)) break;
     }
     found.tries = service.tries() - tries;
     return found;
 }
 
-std::string named(double stopping, double ramp, double factor, double part) {
+std::string name_of(double stopping, double ramp, double factor, double part) {
     return std::to_string(stopping) + " s to rest, ramp of " + std::to_string(ramp) + " s, to " + std::to_string(factor) + " at " +
            std::to_string(part);
 }
@@ -73,7 +73,7 @@ TEST(LoweredOnALine, NeverStandsAndIsNeverFarBelow) {
     for (const double stopping : {0.5, 2.0})
         for (const double ramp : {0.003, 0.05})
             for (const double factor : {0.5, 0.1, 0.02}) {
-                SCOPED_TRACE(named(stopping, ramp, factor, 0.3));
+                SCOPED_TRACE(name_of(stopping, ramp, factor, 0.3));
                 const Lowered found = lowered(stopping, ramp, factor, 0.3);
                 EXPECT_FALSE(found.stood);
                 EXPECT_GT(found.least, 0.95);
@@ -88,7 +88,7 @@ TEST(LoweredOnALine, DISABLED_IsComeToInWhatBrakingTakesHoweverShortTheJerksRamp
     for (const double stopping : {2.0, 4.25})
         for (const double ramp : {0.003, 0.013, 0.05})
             for (const double factor : {0.7, 0.3, 0.1, 0.02}) {
-                SCOPED_TRACE(named(stopping, ramp, factor, 0.3));
+                SCOPED_TRACE(name_of(stopping, ramp, factor, 0.3));
                 const Lowered found = lowered(stopping, ramp, factor, 0.3);
                 EXPECT_GT(found.obeyed, 0);
                 EXPECT_LE(found.obeyed, 1.25 * found.braking / share + 0.2) << "braking takes " << found.braking;
@@ -99,7 +99,7 @@ TEST(LoweredOnALine, DISABLED_IsComeToInWhatBrakingTakesHoweverShortTheJerksRamp
 // Disabled: hundreds of tries, one in nearly every step, and the halts between them end below: at 0.67 of what is wanted.
 TEST(LoweredOnALine, DISABLED_IsNotPlannedInEveryStepForASecond) {
     for (const double factor : {0.02, 0.003}) {
-        SCOPED_TRACE(named(1, 0.0003, factor, 0.05));
+        SCOPED_TRACE(name_of(1, 0.0003, factor, 0.05));
         const Lowered found = lowered(1, 0.0003, factor, 0.05);
         EXPECT_GT(found.obeyed, 0);
         EXPECT_LE(found.tries, 60u);
@@ -110,7 +110,7 @@ TEST(LoweredOnALine, DISABLED_IsNotPlannedInEveryStepForASecond) {
 // Disabled: it stays 3 to 4 % above for nine times as long as braking takes.
 TEST(LoweredOnALine, DISABLED_IsComeToThoughItIsHardlyAnything) {
     for (const double stopping : {1.0, 4.0}) {
-        SCOPED_TRACE(named(stopping, 0.01, 0.0005, 0.3));
+        SCOPED_TRACE(name_of(stopping, 0.01, 0.0005, 0.3));
         const Lowered found = lowered(stopping, 0.01, 0.0005, 0.3);
         EXPECT_GT(found.obeyed, 0);
         EXPECT_LE(found.obeyed, 2 * found.braking + 0.5);
