@@ -51,22 +51,29 @@ private:
 /// The same by its way; asked for in ascending order.
 class BrakingByWay {
 public:
-    explicit BrakingByWay(const Braking& braking) noexcept : braking_(braking), before_(braking.at(0)), behind_(before_) {}
+    explicit BrakingByWay(const Braking& braking) noexcept : braking_(braking), way_(braking.way()) {}
 
+    /// Behind its end it stays at the lower velocity.
     [[nodiscard]] double velocity(double way) noexcept {
-        while (behind_.way < way && next_ <= samples) {
-            before_ = behind_;
-            behind_ = braking_.at(braking_.duration() * next_++ / samples);
+        if (way >= way_) return braking_.at(braking_.duration()).velocity;
+        // Newton from where it was asked for before, kept between what is too early and too late: as exact as the parts themselves, whose jerk a search has to see.
+        double early = time_, late = braking_.duration();
+        Braking::State now = braking_.at(time_);
+        for (int i = 0; i < most_steps && std::fabs(way - now.way) > exact * way_; ++i) {
+            (now.way < way ? early : late) = time_;
+            const double next = time_ + (way - now.way) / now.velocity;
+            time_ = next > early && next < late ? next : (early + late) / 2;
+            now = braking_.at(time_);
         }
-        const double gap = behind_.way - before_.way, part = gap > 0 ? std::fmin((way - before_.way) / gap, 1.0) : 1;
-        return std::fmax(before_.velocity + part * (behind_.velocity - before_.velocity), 0.0);
+        return std::fmax(now.velocity, 0.0);
     }
 
 private:
-    static constexpr int samples = 256;
+    static constexpr int most_steps = 60;
+    static constexpr double exact = 1e-13;
     Braking braking_;
-    Braking::State before_, behind_;
-    int next_ = 1;
+    double way_;
+    double time_ = 0;
 };
 
 }  // namespace taktwerk::axes

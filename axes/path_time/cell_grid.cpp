@@ -125,7 +125,7 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
     add_stations(whole / (coarse ? most_of_coarse_run : most_of_run), task.brake_way);
-    if (task.halt_share > 0) add_corners_of_halt(task);
+    if (task.halt_share > 0 || task.brake_way > 0) add_corners_of_halt(task);
     // A quadratic with this beginning has to stay positive over the first cell.
     if (!from_rest && start.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start.square / -start.slope);
     // Nor may it carry one who is below a lowered velocity far above it.
@@ -136,10 +136,9 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     add_nodes();
 }
 
-/// A halt bends v2(s) where its jerk begins and where it ends: in ways that may be ever so short beside the whole one.
+/// A halt, or braking to a lowered velocity, bends v2(s) where its jerk begins and where it ends: in ways that may be ever so short beside the whole one.
 void CellGrid::add_corners_of_halt(const RunTask& task) {
-    const auto add = [&](double s, double way) {
-        const double size = std::max(corner_share * way, shortest_corner * (task.to - task.from));
+    const auto add = [&](double s, double size) {
         const auto behind = std::upper_bound(stations_.begin(), stations_.end(), s);
         const auto i = behind - stations_.begin();
         if (i == 0) return;  // in front of the run: it has less left to brake than its last ramp takes
@@ -152,9 +151,12 @@ void CellGrid::add_corners_of_halt(const RunTask& task) {
             before = std::min(before, size);
         }
     };
-    add(task.from, task.halt_ramp);
-    add(task.from + task.halt_ramp, task.halt_ramp);
-    add(task.to - task.halt_last, task.halt_last);
+    const auto corner = [&](double s, double way) { add(s, std::max(corner_share * way, shortest_corner * (task.to - task.from))); };
+    // Between its ends they grow.
+    if (task.brake_way > 0) add(task.from + task.brake_way / 2, task.brake_way / cells_of_braking);
+    corner(task.from, task.halt_ramp);
+    corner(task.from + task.halt_ramp, task.halt_ramp);
+    corner((task.halt_share > 0 ? task.to : task.from + task.brake_way) - task.halt_last, task.halt_last);
 }
 
 /// Cells in whose ends the curve bends more sharply than at any station are halved until they fit.

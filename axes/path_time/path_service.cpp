@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "axes/path_time/along_limits.hpp"
 #include "axes/path_time/braking.hpp"
@@ -20,6 +21,13 @@ constexpr double furthest_border = 0.25;  // s behind the first one
 constexpr double cut_before = 1.0;     // s
 constexpr double least_factor = 1e-6;  // what is slower stands
 constexpr double slow_to_obey = 0.25;  // s above what is wanted, besides twice what braking to it takes
+
+/// What a halt is planned with, that begins at a lowered override or above it. Who brakes for that override would come to its velocity first, and creep to the end of the
+/// braking. Nor is it a bound for what an acceleration that is still there adds, ever so softly as it goes.
+double halt_factor(double active, const RunTask& task, const AlongLimits& along) {
+    const double a = std::max(task.acceleration, 0.0), adds = a * a / (2 * std::end(halt_shares)[-1] * along.jerk);
+    return std::max(active, std::min((task.velocity + adds) / along.velocity, 1.0));
+}
 
 }  // namespace
 
@@ -94,8 +102,7 @@ bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthe
 bool PathService::brake_instead(const TimedCurve& curve, const RunTask& task, const RunShape* former) {
     RunTask halt = task;
     halt.softness = 1;
-    const double most = along_limits(curve.at(task.from, CurveSide::after), limits_, 1).velocity;
-    halt.velocity_factor = std::max(active_.factor, std::min(task.velocity / most, 1.0));
+    halt.velocity_factor = halt_factor(active_.factor, task, along_limits(curve.at(task.from, CurveSide::after), limits_, 1));
     return plan_halt(curve, halt, active_.to, former);
 }
 
@@ -139,11 +146,8 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         task.velocity = piece.velocity;
         task.acceleration = piece.slope;
         former = &active_.plan.shape;
-        // Who brakes for a lowered override would come to that velocity first, and creep to the end of the braking.
-        if (stand) {
-            const double most = along_limits(curve.at(task.from, CurveSide::after), limits_, 1).velocity;
-            task.velocity_factor = std::max(task.velocity_factor, std::min(task.velocity / most, 1.0));
-        }
+        if (stand)
+            task.velocity_factor = halt_factor(active_.factor, task, along_limits(curve.at(task.from, CurveSide::after), limits_, 1));
     }
     if (stand) {
         if (at_rest || (active_.stands && wish.revision == active_.revision)) return PathAnswer::nothing_new;

@@ -27,8 +27,12 @@ void RunPlanner::measure_braking() {
         task_.halt_ramp = braking.ramp_way();
         task_.halt_last = braking.last_way();
     } else if (slower_) {
-        const double way = braking_to_factor(guessed_below, braking_share).way();
-        if (way > 0 && way < 0.9 * (task_.to - task_.from)) task_.brake_way = way;
+        const Braking braking = braking_to_factor(guessed_below, braking_share);
+        const double way = braking.way();
+        if (!(way > 0 && way < 0.9 * (task_.to - task_.from))) return;
+        task_.brake_way = way;
+        task_.halt_ramp = braking.ramp_way();
+        task_.halt_last = braking.last_way();
     }
 }
 
@@ -116,10 +120,13 @@ void RunPlanner::take_over(const RunShape& former) {
     BrakingByWay by_way(braking);
     const auto braked_square = [&](double s) { return slower_ ? std::pow(by_way.velocity(s - task_.from), 2) : unlimited; };
     first_window_ = 0;
+    double braked_first = braked_square(grid_.nodes.front());
     for (std::size_t i = 0; i + 1 < grid_.nodes.size(); ++i) {
         const double half = (grid_.nodes[i] + grid_.nodes[i + 1]) / 2;
         const double first = former_square(grid_.nodes[i]), middle = former_square(half), last = former_square(grid_.nodes[i + 1]);
-        double lowered = std::max(braked_square(half), middles_[i]);
+        const double braked = braked_square(half), braked_last = braked_square(grid_.nodes[i + 1]);
+        double lowered = std::max(slower_ ? 2 * braked - (braked_first + braked_last) / 2 : braked, middles_[i]);
+        braked_first = braked_last;
         // Behind that braking as well, where the path itself is slower.
         if (slower_ && half > task_.from + braking.way() && wanted_below(i))
             lowered = std::min(lowered, guessed_below * guessed_below * middles_[i]);
