@@ -459,9 +459,11 @@ int check(const CheckOptions& options) {
         return exit_ok;
     }
     for (const auto& warning : checked.warnings) print_warning(warning);
-    fmt::print("{}: machine '{}', cycle {:g} ms, {}, {} {}, {}: no problem found\n", options.file, config.name,
-               to_seconds(config.cycle) * 1e3, count_text(config.bus.slaves.size(), "slave"), config.axes.size(),
-               config.axes.size() == 1 ? "axis" : "axes", count_text(config.programs.size(), "program"));
+    const auto looks = checked.warnings.size() + remarks.size();
+    fmt::print("{}: machine '{}', cycle {:g} ms, {}, {} {}, {}: {}\n", options.file, config.name, to_seconds(config.cycle) * 1e3,
+               count_text(config.bus.slaves.size(), "slave"), config.axes.size(), config.axes.size() == 1 ? "axis" : "axes",
+               count_text(config.programs.size(), "program"),
+               looks == 0 ? "no problem found" : fmt::format("no error, {} to look at", count_text(looks, "remark")));
     if (!remarks.empty()) fmt::print("\nRuns, but is it meant?\n");
     for (const auto& remark : remarks) fmt::print("  {}: {}\n      {}\n", remark.subject, remark.what, remark.remedy);
     print_slaves(config);
