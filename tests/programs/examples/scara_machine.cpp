@@ -70,7 +70,8 @@ TEST(Scara, BehindAStopItWaitsForAPerson) {
         ExampleMachine m{"scara"};
         ASSERT_TRUE(m.up());
         const auto moves = [&] { return m.axis("shoulder").set_velocity != 0 || m.axis("elbow").set_velocity != 0; };
-        ASSERT_TRUE(m.until([&] { return m.variable("laps") >= (in_a_lap ? 1 : 0) && m.snapshot().groups[0].active != 0 && moves(); }, 20s));
+        ASSERT_TRUE(
+            m.until([&] { return m.variable("laps") >= (in_a_lap ? 1 : 0) && m.snapshot().groups[0].active != 0 && moves(); }, 20s));
         m.run(30ms);
         runtime::OperatorCommand halt;
         halt.action = runtime::OperatorAction::group_halt;
