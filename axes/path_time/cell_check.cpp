@@ -85,6 +85,16 @@ struct Looks {
     void add_to(CellUse& use) const;
 };
 
+/// Near its limit a jerk changes in ways that a parabola through three points does not follow.
+bool cubic_between(const Samples& x) {
+    constexpr double looks_closer = 0.9, cubic = 0.065, counts = 3e-4;
+    for (std::size_t i = 3; i < x.size(); ++i) {
+        const double most = std::max({std::fabs(x[i - 3]), std::fabs(x[i - 2]), std::fabs(x[i - 1]), std::fabs(x[i])});
+        if (most > looks_closer && cubic * std::fabs(x[i] - 3 * (x[i - 1] - x[i - 2]) - x[i - 3]) > counts) return true;
+    }
+    return false;
+}
+
 PathAxisLimits reciprocal(const PathAxisLimits& l) { return {1 / l.velocity, 1 / l.acceleration, 1 / l.jerk}; }
 
 double at_nodes(const Samples& x) { return std::max(std::fabs(x.front()), std::fabs(x.back())); }
@@ -195,17 +205,7 @@ CellUse CellCheck::look_directly(double begin, double length, const TimedCurvePo
     points.back() = last;
     for (std::size_t k = 1; k < verified_points; ++k)
         points[k] = curve_->at(begin + length * static_cast<double>(k) / verified_points, CurveSide::after);
-    if (depth < deepest_look && turns_between(points, limits_.size())) {
-        const double half = (q.first + 2 * q.middle + q.last) / 4;
-        const TimedCurvePoint& middle = points[verified_points / 2];
-        const CellUse one =
-            look_directly(begin, length / 2, first, middle, {q.first, (q.first + q.middle) / 2, half}, velocity_factor, depth + 1);
-        CellUse both = look_directly(begin + length / 2, length / 2, middle, last, {half, (q.middle + q.last) / 2, q.last}, velocity_factor,
-                                     depth + 1);
-        both.peak.widen(one.peak);
-        both.nodes.widen(one.nodes);
-        return both;
-    }
+    bool closer = turns_between(points, limits_.size());
     const Motion m(q, length);
     CellUse use;
     Looks looks;
@@ -216,6 +216,18 @@ CellUse CellCheck::look_directly(double begin, double length, const TimedCurvePo
         for (std::size_t k = 0; k <= verified_points; ++k)
             looks.of_axis(k, over, m, points[k].first[i], points[k].second[i], points[k].third[i]);
         looks.add_to(use);
+        closer = closer || cubic_between(looks.z);
+    }
+    if (depth < deepest_look && closer) {
+        const double half = (q.first + 2 * q.middle + q.last) / 4;
+        const TimedCurvePoint& middle = points[verified_points / 2];
+        const CellUse one =
+            look_directly(begin, length / 2, first, middle, {q.first, (q.first + q.middle) / 2, half}, velocity_factor, depth + 1);
+        CellUse both = look_directly(begin + length / 2, length / 2, middle, last, {half, (q.middle + q.last) / 2, q.last}, velocity_factor,
+                                     depth + 1);
+        both.peak.widen(one.peak);
+        both.nodes.widen(one.nodes);
+        return both;
     }
     return use;
 }

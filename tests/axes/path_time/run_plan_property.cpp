@@ -136,6 +136,17 @@ TEST(RunPlanProperty, ACuspBetweenThePlacesThatAreLookedAtKeepsEveryLimit) {
     EXPECT_EQ(totals.lost, 0u);
 }
 
+// In a cell of eight of the curve's features a jerk rose and fell within a thirtieth of the cell: 0.2 % beyond its limit, between two places that were looked at.
+TEST(RunPlanProperty, AJerkThatIsNoParabolaIsLookedAtMoreClosely) {
+    Totals totals;
+    RandomProgram random(10108);
+    const double size = random.between_decades(0.1, 1000), velocity = size * random.between_decades(0.3, 10);
+    const int axes = random.whole(1, 3), moves = static_cast<int>(random.between_decades(1, 201));
+    const Path path = random.path(moves, size, axes, velocity, random.uniform(0.8, 1));
+    plan_all(path, PathCurve(path, axes), random.limits(axes, velocity), totals);
+    EXPECT_EQ(totals.lost, 0u);
+}
+
 // Through the inverse of an arm of two links, which bends every line: joints' limits hold as well as axes' do.
 TEST(RunPlanProperty, ProgramsThroughAKinematicsKeepEveryLimit) {
     Totals totals;
