@@ -1,4 +1,4 @@
-// A stop right behind an override that was lowered: who goes slower does not stop later. G-063, G-070.
+// A stop right behind an override that was lowered: who goes slower does not stop later.
 
 #include <algorithm>
 #include <cstdio>
@@ -44,7 +44,7 @@ StoppedAfterOverride stopped_after_override(int cycle, int before, bool corner) 
 }
 
 // The tool is accelerating when both come: what is left of its acceleration takes it above the lowered velocity, which is no bound for a stop. In front of a corner a lowered
-// override is another motion (two of 90 such stops, of which this looks at a part, take 1.5 times the way).
+// override is another motion (two of 90 such stops, of which this looks at a part, take 1.5 times the way). G-063, G-070.
 TEST(GroupStopAfterOverride, IsNoLongerThanWithoutIt) {
     int looked = 0;
     for (const bool corner : {false, true})
