@@ -20,7 +20,7 @@ struct RunTask {
     double velocity_factor = 1;
     /// > 0: comes to rest as soon as it can, and `to` is halt_way() with this share of the limits: the search begins with that braking.
     double halt_share = 0;
-    /// Of that braking: the ways in which its deceleration comes and goes.
+    /// Of that braking, or of one to a lowered velocity: the ways in which its deceleration comes and goes.
     double halt_ramp = 0, halt_last = 0;
     /// What share of its usual deceleration and jerk the search begins with that brakes to a lowered velocity factor.
     double softness = 1;
