@@ -83,6 +83,14 @@ function(taktwerk_unoptimised_when_sanitized folder)
   endif()
 endfunction()
 
+# For a folder that computes much in each cycle.
+function(taktwerk_optimised_for_release folder)
+  if(NOT folder IN_LIST TAKTWERK_BORROW)  # a borrowed library is compiled already
+    taktwerk_target_name(${folder} target)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
+  endif()
+endfunction()
+
 # Every folder target so far, for whoever wants them all (benchmarks, header check).
 function(taktwerk_all_targets out)
   get_property(lines GLOBAL PROPERTY TAKTWERK_FOLDERS)

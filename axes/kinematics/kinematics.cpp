@@ -12,11 +12,10 @@ constexpr double whole_turn = 2 * std::numbers::pi;
 /// The turn that an angle is in; beyond what a number of turns holds, the last one (of what is no number, the lowest).
 std::int8_t turn_of(double angle) noexcept {
     if (!(std::abs(angle) < 1e6)) return angle > 0 ? 127 : -127;
-    double whole = std::clamp(nearest_whole(angle / whole_turn), -127.0, 127.0);
+    const double whole = std::clamp(nearest_whole(angle * (1 / whole_turn)), -127.0, 127.0), rest = angle - whole_turn * whole;
     // A half belongs to the turn before.
-    if (angle - whole_turn * whole > whole_turn / 2) ++whole;
-    if (angle - whole_turn * whole <= -whole_turn / 2) --whole;
-    return static_cast<std::int8_t>(std::clamp(whole, -127.0, 127.0));
+    const int one_more = static_cast<int>(rest > whole_turn / 2) - static_cast<int>(rest <= -whole_turn / 2);
+    return static_cast<std::int8_t>(std::clamp(static_cast<int>(whole) + one_more, -127, 127));
 }
 
 Miss outside(const JointSettings& s, std::size_t joint, double value) noexcept {
@@ -28,7 +27,7 @@ Miss outside(const JointSettings& s, std::size_t joint, double value) noexcept {
 
 /// The whole turns away from `angle` that are nearest to `near` and within the limits, where there are some.
 double turned_near(double angle, double near, const JointSettings& s) noexcept {
-    const double best = angle + whole_turn * nearest_whole((near - angle) / whole_turn);
+    const double best = angle + whole_turn * nearest_whole((near - angle) * (1 / whole_turn));
     if (best >= s.low && best <= s.high) return best;
     const double slack = 1e-12 * (1 + std::abs(best));
     if (best > s.high + slack) {

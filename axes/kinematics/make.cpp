@@ -181,9 +181,9 @@ Result<Kinematics> Kinematics::make(const KinematicsDescription& description) {
     k.joint_count_ = std::visit([](const auto& arm) { return arm.joint_count(); }, k.arm_);
     k.rotary_ = std::visit([](const auto& arm) { return arm.rotary(); }, k.arm_);
     if (const auto* six = std::get_if<SixArm>(&k.arm_); six != nullptr && !six->sound())
-        return Error{
-            "kinematics.geometry", std::string(kind), "axes 1 and 2 are parallel, or two joints are one",
-            "Give an arm whose first axis crosses the second one, with links that have a length; check the convention of the table"};
+        return Error{"kinematics.geometry", std::string(kind), "axes 1 and 2 are parallel, or two joints are one",
+                     "Give an arm whose first axis crosses the second one, with links that have a length; check the convention of the "
+                     "table, and that `a` and `d` are not swapped"};
     for (std::size_t i = 0; i < k.joint_count(); ++i)
         if (auto error = check_joint(kind, i + 1, description.joints[i])) return *error;
     k.map_ = AxisMap{description.joints, coupling};

@@ -15,14 +15,14 @@ constexpr double longest_step = 0.5;
 /// What is aimed at: below it is rounding. A last step from refine_rounding gets there, and keeps noise out of what is differentiated twice.
 constexpr double aim = 3e-15;
 
-struct Stand {
+struct Guess {
     std::array<Frame<double>, 7> frames;
     Vector6 error;  ///< position over reach; half the sum of what the axes lack, which is the rotation vector up to its third order
     double left = 0;
 };
 
-Stand stand(const JointChain& chain, const Frame<double>& flange, const Joints& joints, double reach) noexcept {
-    Stand s;
+Guess guess_at(const JointChain& chain, const Frame<double>& flange, const Joints& joints, double reach) noexcept {
+    Guess s;
     s.frames = chain.frames(joints);
     const Frame<double>& at = s.frames[6];
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
@@ -42,7 +42,7 @@ Stand stand(const JointChain& chain, const Frame<double>& flange, const Joints& 
 
 Refined refine(const JointChain& chain, const Frame<double>& flange, const Joints& seed, double reach, int steps) noexcept {
     Refined best{seed, 0, 0};
-    Stand now = stand(chain, flange, seed, reach);
+    Guess now = guess_at(chain, flange, seed, reach);
     best.left = now.left;
     double damping = 0;
     while (best.left > aim && best.steps < steps) {
@@ -61,7 +61,7 @@ Refined refine(const JointChain& chain, const Frame<double>& flange, const Joint
         if (longest > longest_step) step *= longest_step / longest;
         Joints next = best.joints;
         for (std::size_t i = 0; i < 6; ++i) next[i] += step[static_cast<Eigen::Index>(i)];
-        const Stand then = stand(chain, flange, next, reach);
+        const Guess then = guess_at(chain, flange, next, reach);
         if (then.left < best.left) {
             // A damped step that gains most of the way says that the tangent is good again.
             damping = damping > 0 && then.left < 0.1 * best.left ? 0 : 0.2 * damping;
