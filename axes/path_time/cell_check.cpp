@@ -50,6 +50,29 @@ LimitUse missed(const TimedCurvePoint& a, const TimedCurvePoint& m, const TimedC
     return {first / limits.velocity, second / limits.acceleration, std::fabs(whole.third(0.5) - m.third[axis]) / limits.jerk};
 }
 
+/// The greatest velocity and acceleration that limits leave along the curve.
+struct MostAlong {
+    double velocity, acceleration;
+};
+
+MostAlong most_along(const TimedCurvePoint& p, std::span<const PathAxisLimits> limits) {
+    MostAlong most{p.path.velocity, std::max(p.path.acceleration, p.path.deceleration)};
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+        const double first = std::fabs(p.first[i]);
+        if (first > 0)
+            most = {std::min(most.velocity, limits[i].velocity / first), std::min(most.acceleration, limits[i].acceleration / first)};
+    }
+    return most;
+}
+
+/// However short a cell is in which q' hardly changes: what a bend adds goes with q'' v2 and q''' v3, which know nothing of that.
+bool adds_nothing(double second, double third, const MostAlong& most, const PathAxisLimits& limits) {
+    constexpr double nothing = 1e-7;
+    if (second <= 0 && third <= 0) return true;
+    const double v = most.velocity;
+    return second * v * v < nothing * limits.acceleration && (third * v * v + 3 * second * most.acceleration) * v < nothing * limits.jerk;
+}
+
 using Points = std::array<TimedCurvePoint, verified_points + 1>;
 
 /// v2 over a cell at the points, its root, and its slope, which is the acceleration.
@@ -83,14 +106,15 @@ struct Looks {
         z[k] = (first * m.change + 3 * second * m.slope[k] + third * m.square[k]) * m.v[k] * over.jerk;
     }
     void add_to(CellUse& use) const;
+    [[nodiscard]] bool unsure() const { return peak_is_unsure(x) || peak_is_unsure(y); }
 };
 
 /// Near its limit a jerk changes in ways that a parabola through three points does not follow.
 bool cubic_between(const Samples& x) {
-    constexpr double looks_closer = 0.9, cubic = 0.065, counts = 3e-4;
+    constexpr double looks_closer = 0.9, counts = 3e-4;
     for (std::size_t i = 3; i < x.size(); ++i) {
         const double most = std::max({std::fabs(x[i - 3]), std::fabs(x[i - 2]), std::fabs(x[i - 1]), std::fabs(x[i])});
-        if (most > looks_closer && cubic * std::fabs(x[i] - 3 * (x[i - 1] - x[i - 2]) - x[i - 3]) > counts) return true;
+        if (most > looks_closer && cubic_part * std::fabs(x[i] - 3 * (x[i - 1] - x[i - 2]) - x[i - 3]) > counts) return true;
     }
     return false;
 }
@@ -143,11 +167,13 @@ void CellCheck::judge(std::size_t cell) {
     t.straight = t.limits_stay;
     t.quartered = false;
     t.per_unit = t.missed = {};
+    const MostAlong most = most_along(m, limits_);
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         const double size = std::max(std::fabs(a.first[i]), 1e-9);
         for (const TimedCurvePoint* p : {&a, &m, &b})
             t.straight = t.straight && std::fabs(p->second[i]) * t.length < 1e-9 * size &&
-                         std::fabs(p->third[i]) * t.length * t.length < 1e-9 * size;
+                         std::fabs(p->third[i]) * t.length * t.length < 1e-9 * size &&
+                         adds_nothing(std::fabs(p->second[i]), std::fabs(p->third[i]), most, limits_[i]);
         t.per_unit.widen({std::fabs(a.first[i]) / limits_[i].velocity, std::fabs(a.first[i]) / limits_[i].acceleration,
                           std::fabs(a.first[i]) / limits_[i].jerk});
         if (!t.straight) t.missed.widen(missed(a, m, b, i, t.length, limits_[i]));
@@ -211,12 +237,13 @@ CellUse CellCheck::look_directly(double begin, double length, const TimedCurvePo
     Looks looks;
     for (std::size_t k = 0; k <= verified_points; ++k) looks.of_path(k, points[k].path, m, velocity_factor);
     looks.add_to(use);
+    closer = closer || looks.unsure();
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         const PathAxisLimits over = reciprocal(limits_[i]);
         for (std::size_t k = 0; k <= verified_points; ++k)
             looks.of_axis(k, over, m, points[k].first[i], points[k].second[i], points[k].third[i]);
         looks.add_to(use);
-        closer = closer || cubic_between(looks.z);
+        closer = closer || cubic_between(looks.z) || looks.unsure();
     }
     if (depth < deepest_look && closer) {
         const double half = (q.first + 2 * q.middle + q.last) / 4;
@@ -237,10 +264,12 @@ CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_f
     if (t.straight) return straight_use(cell, q, velocity_factor);
     const Motion m(q, t.length);
     const Between way = between(cell, *std::max_element(m.v.begin(), m.v.end()));
-    if (way == Between::nothing) return look_directly(t.begin, t.length, begins_[cell], ends_[cell], q, velocity_factor, 0);
+    const auto directly = [&] { return look_directly(t.begin, t.length, begins_[cell], ends_[cell], q, velocity_factor, 0); };
+    if (way == Between::nothing) return directly();
     CellUse use;
     Looks looks;
     for (std::size_t k = 0; k <= verified_points; ++k) looks.of_path(k, begins_[cell].path, m, velocity_factor);
+    if (looks.unsure()) return directly();
     looks.add_to(use);
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         const PathAxisLimits over = reciprocal(limits_[i]);
@@ -263,6 +292,7 @@ CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_f
             part(2 * per_quarter, 2 * per_quarter, middles_[cell], ends_[cell]);
         }
         exact(verified_points, ends_[cell]);
+        if (looks.unsure()) return directly();
         looks.add_to(use);
     }
     return use;

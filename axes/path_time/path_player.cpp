@@ -4,10 +4,10 @@ namespace taktwerk::axes {
 
 /// At the border in front of piece_: goes over to what is offered if that begins here; refuses it if that would have been earlier.
 void PathPlayer::take_offer() noexcept {
-    const TimeStretch* next = exchange_.offered();
-    if (next == nullptr || next == stretch_) return;
+    const TimeStretch* next = exchange_.look();
+    if (next == nullptr) return;
     const std::uint32_t running = stretch_ != nullptr ? stretch_->id : 0;
-    if (next->follows == running && stretch_ != nullptr && next->at_piece > piece_) return;  // not yet
+    if (next->follows == running && stretch_ != nullptr && next->at_piece > piece_) return exchange_.leave();  // not yet
     if (next->follows == running && (stretch_ == nullptr || next->at_piece == piece_) && (standing() || border_)) {
         stretch_ = next;
         piece_ = 0;

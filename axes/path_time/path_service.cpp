@@ -13,7 +13,8 @@ namespace {
 
 /// Of the limits, that a halt is tried with: nearly all along a line, ever less where the path bends.
 constexpr double halt_shares[] = {0.98, 0.955, 0.93, 0.905, 0.85, 0.74, 0.645, 0.56, 0.485, 0.42, 0.37, 0.32, 0.28, 0.24, 0.21};
-constexpr int patience = 4;  // borders from which a lowered velocity is not found, until it is looked for with less deceleration
+constexpr int hard_shares = 4;  // of them
+constexpr int patience = 4;     // borders from which a lowered velocity is not found, until it is looked for with less deceleration
 constexpr double softer = 0.6, softest = 0.1;
 constexpr int forbearance = 9;            // borders from which it is not, until it brakes as for a halt, to find a way from there
 constexpr double furthest_border = 0.25;  // s behind the first one
@@ -83,16 +84,21 @@ void PathService::send(int at_piece, const RunTask& task, bool stands, std::uint
 /// To rest as soon as can be: at the least distance at which a plan is found.
 bool PathService::plan_halt(const TimedCurve& curve, RunTask task, double furthest, const RunShape* former) {
     const AlongLimits l = along_limits(curve.at(task.from, CurveSide::after), limits_, 1);
-    // As along a straight line with all of the limits, then with ever less of them.
-    for (const double share : halt_shares) {
-        const double way = Braking(task.velocity, task.acceleration, share * l.deceleration, share * l.jerk).way();
-        task.to = task.from + way;
+    const auto aim = [&](double share) {
         task.halt_share = share;
-        const bool goes = task.to > task.from + 1e-12 * std::fabs(task.from);  // or what runs comes to rest as soon
-        if (!goes || !(task.to < furthest)) return false;
+        task.to = task.from + Braking(task.velocity, task.acceleration, share * l.deceleration, share * l.jerk).way();
+        return task.to > task.from + 1e-12 * std::fabs(task.from) && task.to < furthest;  // or what runs comes to rest as soon
+    };
+    const auto plan = [&] {
         ++tries_;
         planner_.plan(curve, limits_, task, plan_, former);
-        if (found()) return true;
+        return found();
+    };
+    // As along a straight line with all of the limits, then with ever less of them. Where the least is still too much, so is all between.
+    for (const double& share : halt_shares) {
+        if (&share == halt_shares + hard_shares && aim(std::end(halt_shares)[-1]) && !plan()) return false;
+        if (!aim(share)) return false;
+        if (plan()) return true;
     }
     return false;
 }
@@ -114,9 +120,15 @@ PathAnswer PathService::shorten(const TimedCurve& curve, std::size_t begin, cons
     return PathAnswer::offered;
 }
 
+/// An offer waits for its border, which may be a quarter of a second away. Who shall stand meanwhile, or harder, does not wait for that: a halt that is found from an earlier border
+/// takes the place of an offer to go, and one that ends sooner that of a softer halt. So however often a wish changes, it comes to rest.
 PathAnswer PathService::step(const TimedCurve& curve, double final_end, const PathWish& wish) {
-    if (pending_) {
-        if (exchange_.offering()) return PathAnswer::waiting;
+    const bool stand = wish.motion == PathWish::Motion::stand || !(wish.velocity_factor >= least_factor);
+    if (pending_ && exchange_.offering()) {
+        if (!stand || active_.id == 0 || (sent_.stands && wish.revision == sent_.revision)) return PathAnswer::waiting;
+        // What runs comes to rest, if nobody goes on from it.
+        if (active_.stands && !sent_.stands && exchange_.take_back()) pending_ = false;
+    } else if (pending_) {
         pending_ = false;
         if (exchange_.progress().stretch != sent_.id) {
             ++late_;
@@ -127,7 +139,6 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
         std::swap(active_, sent_);
     }
     const StretchProgress at = exchange_.progress();
-    const bool stand = wish.motion == PathWish::Motion::stand || !(wish.velocity_factor >= least_factor);
     Failed now{.stand = stand, .stretch = active_.id, .revision = wish.revision};
     now.to = stand ? 0 : final_end;
     now.factor = stand ? 0 : std::min(wish.velocity_factor, 1.0);
@@ -135,6 +146,7 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     const bool again = failures > 0 && failed_.to == now.to;
     const int begin = border(at, again ? failed_.border : -1);
     if (begin < 0) return PathAnswer::kept;
+    if (pending_ && !sent_.stands && begin >= sent_.at_piece) return PathAnswer::waiting;
     now.border = begin;
     const bool at_rest = begin >= static_cast<int>(active_.plan.pieces.size());
     RunTask task;
@@ -151,7 +163,9 @@ PathAnswer PathService::step(const TimedCurve& curve, double final_end, const Pa
     }
     if (stand) {
         if (at_rest || (active_.stands && wish.revision == active_.revision)) return PathAnswer::nothing_new;
-        if (!plan_halt(curve, task, active_.to, former)) return nothing_found(now, false);
+        const double furthest = pending_ && sent_.stands ? std::min(sent_.to, active_.to) : active_.to;
+        if (!plan_halt(curve, task, furthest, former)) return nothing_found(now, false);
+        if (pending_ && !exchange_.take_back()) return PathAnswer::waiting;
         task.to = plan_.shape.end;
         send(begin, task, true, wish.revision);
         return PathAnswer::offered;

@@ -11,8 +11,9 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr int rounds_at_most = 9;
+constexpr int slow_downs = 4;
 constexpr double least_share = 0.8;  // of a limit, that a cell is lowered to
-constexpr int split_rounds = 4;
+constexpr int split_rounds = 6, split_rounds_moving = 4;
 constexpr double below_factor = 1 - 6e-5;  // of a lowered velocity: what is left of a soft cap is below it
 constexpr double over_halt = 0.02;         // of v2 where it begins, that a halt may be above braking as along a line
 constexpr int window = 192;                // cells that are solved and stay
@@ -338,7 +339,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     first_window_ = 0;
     beyond_.clear();
     split_.clear();
-    splits_left_ = split_rounds;
+    splits_left_ = task.velocity > 0 ? split_rounds_moving : split_rounds;
     slower_ = former != nullptr && task.velocity_factor < former->velocity_factor;
     measure_braking();
     grid_.make(*curve_, limits_, task_,
@@ -361,17 +362,20 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
         settle_braking(out);
         settle_ramps(out);
     }
-    out.use = verify({0, problem_.cells()});
+    if (solved || from_rest()) out.use = verify({0, problem_.cells()});
     out.found = solved && mend(out);
     LimitUse use;
     for (const LimitUse& cell : uses_) use.widen(cell);
     if (!out.found && from_rest()) {
         splits_left_ = 0;
         use = verify({0, problem_.cells()});
-        slow_down(use);
-        beyond_.clear();
-        use = verify({0, problem_.cells()});
-        out.found = use.inside();
+        // Slower cells may be looked at in another way than before, and a hair more be seen.
+        for (int i = 0; i < slow_downs && !out.found; ++i) {
+            slow_down(use);
+            beyond_.clear();
+            use = verify({0, problem_.cells()});
+            out.found = use.inside();
+        }
     }
     out.use = use;
     out.cells = out.planned = problem_.cells();

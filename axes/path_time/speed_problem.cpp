@@ -10,6 +10,8 @@ namespace {
 
 constexpr int max_steps = 60;
 constexpr int steps_inside = 60, steps_inside_near = 30;  // until all bounds hold
+constexpr int look_every = 8;                             // steps; a search from far outside that came no nearer in them gives up:
+constexpr double nearer = 0.95;                           // than to this part of what was beyond its bounds
 constexpr double to_the_boundary = 0.95;                  // of the way that a step may go towards it
 constexpr double inside_first = 10;                       // gap while a bound is relaxed: the goal counts a tenth of it
 constexpr double inside_near = 0.3;                       // the same where little is beyond a bound
@@ -183,29 +185,37 @@ void SpeedProblem::look_at_squares(const CellRange& range) {
 /// what is inside all true bounds once stays there.
 void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
     feasible_ = true;
-    soft_beyond_ = 0;
+    hard_beyond_ = soft_beyond_ = 0;
     each_place(range, [&](Place& p, std::size_t c) {
         const double d0 = d_[c], d1 = d_[c + 1], d2 = d_[c + 2];
         const auto look = [&](Pair& x, double size) {
-            const Lanes value = x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2;
+            const Lanes value = x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2, used = value / size, limit = x.wanted;
+            const Lanes before = x.bound > limit ? x.bound : limit;
+            Lanes bound = used >= limit * (1 - hair) ? used + beyond * (limit > used ? limit : used) : limit;
+            if (room == Room::less) bound = bound < before ? bound : before;
+            if (room == Room::half) {
+                bound = used + 0.5 * (before - used);
+                bound = bound > limit ? bound : limit;
+            }
+            x.bound = bound;
             for (int lane = 0; lane < 2; ++lane) {
-                const double used = value[lane] / size, limit = x.wanted[lane];
-                const double before = std::max(x.bound[lane], limit);
-                double bound = limit;
-                if (used >= limit * (1 - hair)) bound = used + beyond * std::max(limit, used);
-                if (room == Room::less) bound = std::min(bound, before);
-                if (room == Room::half) bound = std::max(limit, used + 0.5 * (before - used));
+                if (!(bound[lane] > limit[lane])) {
+                    if (room == Room::first && x.kind[lane] == Bound::soft_cap && holds_) x.kind[lane] = Bound::held_cap;
+                    continue;
+                }
                 // What the cells beside the range do alone stays as it is, whatever it is.
                 const bool beside = (static_cast<int>(c) == range.first - 1 && !(x.g2[lane] != 0)) ||
                                     (static_cast<int>(c) == range.last && !(x.g0[lane] != 0));
-                x.bound[lane] = bound;
-                if (x.kind[lane] == Bound::soft_cap && room == Room::first && holds_ && bound <= limit) x.kind[lane] = Bound::held_cap;
-                if (x.kind[lane] != Bound::soft_cap) feasible_ = feasible_ && (beside || bound <= limit);
-                else soft_beyond_ += bound / limit - 1;
-                const double inverse = 1 / std::max(size * x.bound[lane] - value[lane], 1e-9 * size * x.bound[lane]);
-                x.z[lane] *= inverse / x.inverse[lane];  // as central as before
-                x.inverse[lane] = inverse;
+                if (x.kind[lane] == Bound::soft_cap) {
+                    soft_beyond_ += bound[lane] / limit[lane] - 1;
+                } else if (!beside) {
+                    feasible_ = false;
+                    hard_beyond_ += bound[lane] / limit[lane] - 1;
+                }
             }
+            const Lanes left = size * bound - value, least = 1e-9 * size * bound, inverse = 1 / (left > least ? left : least);
+            x.z *= inverse / x.inverse;  // as central as before
+            x.inverse = inverse;
         };
         for (int i = 0; i < p.plain_count; ++i) look(plain_[static_cast<std::size_t>(p.plain + i)], 1);
         for (int i = 0; i < p.jerk_count; ++i) look(jerk_[static_cast<std::size_t>(p.jerk + i)], p.over_v);
@@ -432,7 +442,7 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
         double mu = (far ? inside_first : inside_near) / sides;
         center(range, mu);
         // Soft caps are come back to as long as there is something to gain.
-        double soft = soft_beyond_;
+        double soft = soft_beyond_, hard = hard_beyond_;
         for (int i = 0, idle = 0; i < (far ? steps_inside : steps_inside_near) && (!feasible_ || (soft_beyond_ > 0 && idle < 6)); ++i) {
             ++outcome.steps;
             assemble(range, mu);
@@ -442,6 +452,10 @@ SpeedOutcome SpeedProblem::solve(std::vector<double>& d, const CellRange& wanted
             relax(range, far ? Room::less : Room::half, room_beyond);
             idle = soft_beyond_ < 0.999 * soft ? 0 : idle + 1;
             soft = soft_beyond_;
+            if (far && !feasible_ && i % look_every == look_every - 1) {
+                if (hard_beyond_ > nearer * hard) return false;
+                hard = hard_beyond_;
+            }
             if (step > 0.9 && !feasible_ && !far) mu *= 3;  // it is central, and still outside: further from all bounds
         }
         return feasible_;

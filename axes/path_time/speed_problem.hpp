@@ -145,8 +145,8 @@ private:
     double scale_ = 1;      // of the goal
     double decrement_ = 0;  // Newton's: what a step promises
     bool feasible_ = false;
-    bool holds_ = true;       // soft caps are held where the guess is inside
-    double soft_beyond_ = 0;  // how far soft caps are relaxed, all together
+    bool holds_ = true;                         // soft caps are held where the guess is inside
+    double hard_beyond_ = 0, soft_beyond_ = 0;  // how far bounds are relaxed, all together, and soft caps
 };
 
 }  // namespace taktwerk::axes

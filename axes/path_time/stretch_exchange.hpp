@@ -32,12 +32,15 @@ public:
     // The planner's side.
 
     /// A stretch to be filled; nothing while the last one offered was neither taken nor refused.
-    [[nodiscard]] TimeStretch* free_stretch() noexcept {
-        return offered_.load(std::memory_order_acquire) == nullptr ? &stretches_[filled_ ^ 1u] : nullptr;
-    }
+    [[nodiscard]] TimeStretch* free_stretch() noexcept { return offering() ? nullptr : &stretches_[filled_ ^ 1u]; }
     /// Offers the stretch that free_stretch() gave.
-    void offer() noexcept { offered_.store(&stretches_[filled_ ^ 1u], std::memory_order_release); }
-    [[nodiscard]] bool offering() const noexcept { return offered_.load(std::memory_order_acquire) != nullptr; }
+    void offer() noexcept { offer_.store(free_one(), std::memory_order_release); }
+    [[nodiscard]] bool offering() const noexcept { return offer_.load(std::memory_order_acquire) != Offer::none; }
+    /// The offer is free_stretch() again. False: it was taken or refused, or the cycle is looking at it just now.
+    [[nodiscard]] bool take_back() noexcept {
+        Offer made = free_one();
+        return offer_.compare_exchange_strong(made, Offer::none, std::memory_order_acq_rel, std::memory_order_acquire);
+    }
     /// Where the cycle is. Asked for after offering() was false, it says whether the last offer was taken: from then on its stretch runs.
     [[nodiscard]] StretchProgress progress() const noexcept {
         const std::uint64_t both = progress_.load(std::memory_order_acquire);
@@ -48,23 +51,35 @@ public:
     /// As new, for another path. While the cycle uses it no more, and not yet again.
     void reset() noexcept {
         filled_ = 0;
-        offered_.store(nullptr, std::memory_order_relaxed);
+        offer_.store(Offer::none, std::memory_order_relaxed);
         progress_.store(0, std::memory_order_release);
     }
 
     // The cycle's side.
 
-    [[nodiscard]] const TimeStretch* offered() const noexcept { return offered_.load(std::memory_order_acquire); }
+    /// What is offered; nobody takes it back until answer() or leave().
+    [[nodiscard]] const TimeStretch* look() noexcept {
+        looked_at_ = offer_.load(std::memory_order_acquire);
+        const bool mine = looked_at_ != Offer::none && offer_.compare_exchange_strong(looked_at_, Offer::looked_at,
+                                                                                      std::memory_order_acq_rel, std::memory_order_acquire);
+        return mine ? &stretches_[looked_at_ == Offer::first ? 0 : 1] : nullptr;
+    }
+    /// It stays an offer: its border has not come.
+    void leave() noexcept { offer_.store(looked_at_, std::memory_order_release); }
     /// Takes or refuses the offer; where the cycle is has been told before.
-    void answer() noexcept { offered_.store(nullptr, std::memory_order_release); }
+    void answer() noexcept { offer_.store(Offer::none, std::memory_order_release); }
     void tell(const StretchProgress& at) noexcept {
         progress_.store((static_cast<std::uint64_t>(at.stretch) << 32) | static_cast<std::uint32_t>(at.piece), std::memory_order_release);
     }
 
 private:
+    enum class Offer : std::uint8_t { none, first, second, looked_at };
+    [[nodiscard]] Offer free_one() const noexcept { return (filled_ ^ 1u) == 0 ? Offer::first : Offer::second; }
+
     std::array<TimeStretch, 2> stretches_{};
     unsigned filled_ = 0;  // the planner's: the other one is free
-    std::atomic<const TimeStretch*> offered_{nullptr};
+    std::atomic<Offer> offer_{Offer::none};
+    Offer looked_at_ = Offer::none;  // the cycle's
     std::atomic<std::uint64_t> progress_{0};
 };
 

@@ -176,7 +176,7 @@ enum class ErrorId : std::uint16_t {
     // What a group watches of its tool's point.
     outside_workspace = 0x0056,     ///< a place of the path is outside the group's workspace, or in a room that is kept free
     path_following_error = 0x0057,  ///< the tool's point was further from where it should be than the group's window
-    held_by_person = 0x0058,        ///< MC_GroupContinue, and it was a person who interrupted the group
+    held_by_person = 0x0058,        ///< a person has interrupted the group: no program goes on, homes, jogs or drives it
 };
 inline constexpr std::size_t error_id_count = 0x0059;
 

@@ -3,7 +3,8 @@
 // fine grid, finite differences for b' and b'' instead of splines, each limit as it stands (no tangent to that of jerk), and a barrier that is lowered
 // step by step, from a motion so slow that it is inside of everything (Nocedal, Wright: Numerical Optimization, chapter 19). All iterates are feasible.
 // The places are as s = u^3 (10 - 15 u + 6 u^2) of the way, as close as equal times are at rest; there b goes with s^(4/3), which no difference sees, so
-// the first and the last cell, eight of those steps long, are at constant jerk.
+// the first and the last cell, eight of those steps long, are at constant jerk. A place lies where q''' jumps, and keeps the limits of both sides: beside
+// it a limit would show too late. Nothing stands still on the way: at b = 0 the jerk has no limit, and who is there leaves with any acceleration.
 //
 // How exact: LeastTime.TheOracleKnowsALine, where the optimum is known. The problem is not convex (the limit of jerk is not), so on a curve it is a least
 // time near its beginnings, which differ.
@@ -34,7 +35,18 @@ public:
         places_.push_back(from);
         for (std::size_t i = 1; i < cells_; ++i) places_.push_back(place(i + at_rest - 1));
         places_.push_back(to);
-        for (std::size_t i = 1; i < cells_; ++i) add_rows(curve.at(places_[i], CurveSide::after), i, velocity_factor);
+        std::vector<bool> jumps(cells_ + 1, false);
+        for (double s = curve.next_break(from); s < places_[cells_ - 1]; s = curve.next_break(s)) {
+            const auto behind = static_cast<std::size_t>(std::upper_bound(places_.begin(), places_.end(), s) - places_.begin());
+            const std::size_t nearest = places_[behind] - s < s - places_[behind - 1] ? behind : behind - 1;
+            if (nearest < 2 || nearest + 2 > cells_) continue;
+            places_[nearest] = s;
+            jumps[nearest] = true;
+        }
+        for (std::size_t i = 1; i < cells_; ++i) {
+            add_rows(curve.at(places_[i], CurveSide::after), i, velocity_factor);
+            if (jumps[i]) add_rows(curve.at(places_[i], CurveSide::before), i, velocity_factor);
+        }
         add_rest(curve.at(from, CurveSide::after), 1, places_[1] - from);
         add_rest(curve.at(to, CurveSide::before), cells_ - 1, to - places_[cells_ - 1]);
     }
@@ -42,6 +54,7 @@ public:
     /// Seconds from rest to rest.
     double solve(Beginning beginning = Beginning::even) {
         begin(beginning);
+        for (std::size_t i = 1; i < cells_; ++i) rows_.push_back({i, {0, -1, 0}, -slowest * b_[i], false});
         const auto sides = static_cast<double>(rows_.size());
         constexpr double last = 1e-5, lower = 0.25;  // what the barrier costs of the time; by how much it is lowered
         // A search that comes too near to many limits at once goes on in small steps: it is led back between them, and does it again.
@@ -58,12 +71,22 @@ public:
     /// The greatest use of a limit at the places: below 1, or it is no motion.
     [[nodiscard]] double most_used() const {
         double most = 0;
-        for (const Row& r : rows_) most = std::max(most, 1 - slack(r, b_) / limit_at(r, b_));
+        for (const Row& r : rows_)
+            if (r.limit > 0) most = std::max(most, 1 - slack(r, b_) / limit_at(r, b_));
         return most;
+    }
+    /// The least b of all places, in parts of the least that is allowed: near 1 a motion stands still somewhere, and is none.
+    [[nodiscard]] double slowest_place() const {
+        double least = INFINITY;
+        for (const Row& r : rows_)
+            if (r.limit < 0) least = std::min(least, b_[r.place] / -r.limit);
+        return least;
     }
 
 private:
-    /// g . (b of the place before, here, behind) <= limit, or <= limit / sqrt(b here).
+    static constexpr double slowest = 0.25;  // of b of the motion that the search begins with
+
+    /// g . (b of the place before, here, behind) <= limit, or <= limit / sqrt(b here). Negative: of what is at least.
     struct Row {
         std::size_t place;
         std::array<double, 3> g;
@@ -146,7 +169,7 @@ private:
     /// Of its limit, that is left of the row of which least is left.
     [[nodiscard]] double least_share(const std::vector<double>& b) const {
         double least = 1;
-        for (const Row& r : rows_) least = std::min(least, slack(r, b) / limit_at(r, b));
+        for (const Row& r : rows_) least = std::min(least, slack(r, b) / std::fabs(limit_at(r, b)));
         return least;
     }
 
