@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
@@ -36,7 +38,8 @@ const WorkspaceRoom* covered_by(const WorkspaceRoom& room, const Workspace& spac
 
 std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<const std::string> axes) {
     std::vector<Error> errors;
-    std::set<std::string> names, taken;
+    std::set<std::string> names;
+    std::map<std::string, std::string> taken;  // by whom
     const std::vector<std::string> known(axes.begin(), axes.end());
     for (std::size_t i = 0; i < groups.size(); ++i) {
         const auto& group = groups[i];
@@ -61,7 +64,7 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
         if (group.kinematics && group.members.size() != group.kinematics->joint_count())
             problem_in(".members", "kinematics",
                        "its arm has " + std::to_string(group.kinematics->joint_count()) + " joints, and it has " +
-                           std::to_string(group.members.size()) + " members",
+                           std::to_string(group.members.size()) + fmt::format(" members ({})", fmt::join(group.members, ", ")),
                        "name one axis for each joint, from the base on");
         for (std::size_t k = 0; k < group.members.size(); ++k) {
             const auto& member = group.members[k];
@@ -70,8 +73,8 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
                 const auto near = nearest_name(member, known);
                 problem_in(place, "unknown_axis", "there is no axis '" + member + "'",
                            near.empty() ? "name an axis of `axes`" : "did you mean '" + near + "'?");
-            } else if (!taken.insert(member).second) {
-                problem_in(place, "axis_twice", "axis '" + member + "' is in this or another group already",
+            } else if (const auto [owner, first] = taken.emplace(member, group.name); !first) {
+                problem_in(place, "axis_twice", "axis '" + member + "' is a member of group '" + owner->second + "' already",
                            "give each axis to one group, once");
             }
         }
@@ -91,7 +94,7 @@ std::vector<Error> check(std::span<const AxisGroupConfig> groups, std::span<cons
                                "compare their sides, or leave one of them out");
             }
         if (group.following.window == 0 && group.following.time > Duration{})
-            problem_in(".following.time", "following", "its following error has a time and no window, and nobody would look at it",
+            problem_in(".following.window", "following", "its following error has a time and no window, and nobody would look at it",
                        "give the window: how far the tool may be from its path");
         if (!std::isfinite(group.following.window) || group.following.window < 0 || group.following.time < Duration{})
             problem_in(".following.window", "following", "the window of its following error is negative or none",

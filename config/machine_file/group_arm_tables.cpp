@@ -1,7 +1,9 @@
 #include "config/machine_file/group_arm_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -14,6 +16,9 @@ namespace {
 
 Codec<double> angle() { return angle_in_rad(); }
 Codec<double> length() { return length_of_group(); }
+
+constexpr std::array<std::string_view, 9> arms{"cartesian",    "core_xy",      "beam_gantry", "scara", "palletizer",
+                                               "rotary_delta", "linear_delta", "wrist",       "dh"};
 
 template <class Shape>
 Table<Shape> shape_table(std::string title, std::string doc, std::vector<Field<Shape>> fields) {
@@ -145,6 +150,14 @@ Table<JointEntry> joint_table() {
 
 }  // namespace
 
+bool report_arm_word(Reader& reader, const Node& word) {
+    const auto kind = nearest_name(word.text, {arms.begin(), arms.end()});
+    if (kind.empty()) return false;
+    reader.problem(word.at, "config.group_arm", "`" + reader.path() + "` has its arm as a value, `" + word.text + "`",
+                   "the kind is a key, with the lengths in it: `" + kind + ": { ... }`");
+    return true;
+}
+
 Table<ArmEntry> arm_table() {
     using A = ArmEntry;
     using namespace axes;
@@ -243,12 +256,19 @@ Table<ArmEntry> arm_table() {
                       "of six joints: how this very arm differs from the written one, by axis; its inverse is then Newton's"));
     f.push_back(field("joints", &A::joints, by_name(section(joint_table()), [](JointEntry& j) -> std::string& { return j.axis; }),
                       "senses, zeros and limits of members, by axis"));
+    table.instead = {{"kind", "the kind is a key of its own"}, {"type", "the kind is a key of its own"}};
     table.after = [](Reader& reader, const Node& node, A&) {
-        constexpr const char* arms[] = {"cartesian",    "core_xy",      "beam_gantry", "scara", "palletizer",
-                                        "rotary_delta", "linear_delta", "wrist",       "dh"};
         int kinds = 0;  // also of one in which something is wrong
-        for (const char* kind : arms) kinds += node.find(kind) != nullptr ? 1 : 0;
+        for (const auto& kind : arms) kinds += node.find(kind) != nullptr ? 1 : 0;
         if (kinds == 1) return;
+        if (kinds == 0) {
+            for (const char* key : {"kind", "type"})
+                if (const Node* word = node.find(key);
+                    word != nullptr && word->kind == Node::Kind::scalar && report_arm_word(reader, *word))
+                    return;
+            for (const auto& entry : node.entries)
+                if (!nearest_name(entry.key, {arms.begin(), arms.end()}).empty()) return;  // told as misspelt
+        }
         reader.problem(node.at, "config.group_arm",
                        "`" + reader.path() + "` names " + (kinds == 0 ? "no arm" : std::to_string(kinds) + " arms"),
                        "write one of cartesian, core_xy, beam_gantry, scara, palletizer, rotary_delta, linear_delta, wrist, dh");

@@ -46,6 +46,9 @@ Table<CarriedEntry> carried_table(const std::string& kind, std::string doc, bool
         six_fields<C>(
             table.fields, [](C& c) -> SixNumbers& { return c.frame; }, "the tool's point, seen from the flange");
     body_fields(table.fields);
+    if (has_point) table.instead = {{"length", "write `z`: its point is seen from the flange"}};
+    else
+        for (const char* key : {"x", "y", "z"}) table.instead.emplace_back(key, "write it under `centre: { ... }`, the centre of gravity");
     return table;
 }
 
@@ -72,7 +75,8 @@ std::uint8_t selected(Reader& reader, const Node& node, const char* key, const s
     std::vector<std::string> names;
     for (const auto& one : all) names.push_back(one.name);
     const auto near = nearest_name(name, names);
-    const Node* own = node.find(key);
+    const Node *own = node.find(key), *section = node.find(std::string(key) + "s");
+    if (section != nullptr && section->kind != Node::Kind::map) return 0;  // told already: nobody knows what it would have had
     reader.problem(own != nullptr ? own->at : node.at, "config.group_selected", "`" + std::string(key) + "s` has no '" + name + "'",
                    near.empty() ? "name one of `" + std::string(key) + "s`, or leave it out for number 0" : "did you mean '" + near + "'?");
     return 0;
@@ -94,7 +98,8 @@ std::vector<Field<GroupEntry>> equipment_fields() {
         frames.push_back(frame("pcs_" + std::to_string(i + 1), "Where this product's frame stands in the world at the beginning.",
                                [i](G& g) -> SixNumbers& { return g.group.equipment.frames.product[i]; }));
     fields.push_back(
-        group<G>("frames", "Frames in which programs give positions; MC_SetCoordinateTransform changes them.", std::move(frames)));
+        group<G>("frames", "Frames in which programs give positions; MC_SetCoordinateTransform changes them.", std::move(frames),
+                 {{"mcs", "where the machine (MCS) stands in the world is `machine`"}, {"pcs", "write which one, such as `pcs_1`"}}));
     const auto name_of = [](CarriedEntry& c) -> std::string& { return c.name; };
     fields.push_back(
         field("tools", &G::tools,

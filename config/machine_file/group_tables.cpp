@@ -1,6 +1,7 @@
 #include "config/machine_file/group_tables.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -25,7 +26,12 @@ void check_names(Reader& reader, const Node& group, const std::string& name) {
     const auto* members = group.find("members");
     if (members == nullptr || members->kind != Node::Kind::list) return;
     std::vector<std::string> known;
-    for (const auto& member : members->items) {
+    std::vector<const Node*> named;  // what is no word is told by its own codec
+    for (const auto& member : members->items)
+        if (member.kind == Node::Kind::scalar && !member.text.empty() && std::isalpha(static_cast<unsigned char>(member.text.front())) != 0)
+            named.push_back(&member);
+    for (const Node* node : named) {
+        const auto& member = *node;
         if (std::find(known.begin(), known.end(), member.text) != known.end())
             reader.problem(member.at, "config.group_member", "axis '" + member.text + "' is twice a member of group " + name,
                            "name each axis once, in the order of the joints");
@@ -33,6 +39,18 @@ void check_names(Reader& reader, const Node& group, const std::string& name) {
     }
     const auto* kinematics = group.find("kinematics");
     if (kinematics == nullptr) return;
+    // A member that is no axis is told here, with its place; what stands below by the axis' right name is not accused for it.
+    std::vector<std::string> axes;
+    for (const auto& [axis, unit] : reader.units_of_axes) axes.push_back(axis);
+    const auto is_axis = [&](const std::string& of) { return std::find(axes.begin(), axes.end(), of) != axes.end(); };
+    for (const Node* node : named) {
+        const auto& member = *node;
+        if (is_axis(member.text)) continue;
+        const auto near = nearest_name(member.text, axes);
+        reader.problem(member.at, "config.group_member", "there is no axis '" + member.text + "'",
+                       near.empty() ? "name an axis of `axes`" : "did you mean '" + near + "'?");
+        if (!near.empty()) known.push_back(near);
+    }
     const auto check = [&](const Node& by_axis) {
         for (const auto& entry : by_axis.entries) {
             if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
@@ -190,6 +208,7 @@ Table<GroupEntry> group_table() {
     auto arm = section(arm_table());
     const auto read = arm.read;
     arm.read = [read](Reader& reader, const Node& node, ArmEntry& entry) {
+        if (node.kind == Node::Kind::scalar && report_arm_word(reader, node)) return false;
         const auto kept = reader.axis_unit;
         const bool good = read(reader, node, entry);
         reader.axis_unit = kept;
@@ -200,6 +219,11 @@ Table<GroupEntry> group_table() {
         "the arm that they are", "none: ACS alone"));
     for (auto& equipment : equipment_fields()) f.push_back(std::move(equipment));
     for (auto& watched : workspace_fields()) f.push_back(std::move(watched));
+    table.instead = {{"axes", "`members` names them, such as `members: [x, y]`"}};
+    for (const char* key : {"base", "joints", "deviations"}) table.instead.emplace_back(key, "it is a key of `kinematics`: move it there");
+    for (const char* key : {"velocity", "acceleration", "deceleration", "jerk"})
+        table.instead.emplace_back(key, "it is a key of `default`: move it there");
+    table.instead.emplace_back("limits", "each axis has limits of its own; how fast it goes where a command does not say it is `default`");
     table.before = [](Reader& reader, const Node& node, G& g) {
         const auto* unit = node.find("unit");
         const auto& known = axis_units();
@@ -245,7 +269,8 @@ axes::AxisGroupConfig made_of(Reader& reader, const GroupEntry& entry, const std
     group.kinematics = std::make_shared<const axes::Kinematics>(made.value());
     check_deviations(reader, made.value(), written, entry.unit, here);
     const auto& rotary = group.kinematics->rotary();
-    for (std::size_t i = 0; i < std::min(group.members.size(), group.kinematics->joint_count()); ++i) {
+    if (group.members.size() != group.kinematics->joint_count()) return group;  // told as that, and which is missing nobody knows
+    for (std::size_t i = 0; i < group.members.size(); ++i) {
         const auto unit = units.find(group.members[i]);
         if (unit == units.end()) continue;
         const bool turns = parse_quantity("1 " + unit->second, Dimension::position, "rad").problem == QuantityProblem::none;

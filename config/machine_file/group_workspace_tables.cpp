@@ -61,6 +61,10 @@ Table<RoomEntry> room_table() {
     f.push_back(field_via<R>(
         "frame", section(std::move(frame)), [](R& r, const axes::SixNumbers& six) { r.frame = six; }, "in which the sides are counted",
         "the machine's"));
+    table.instead = {{"diameter", "write `radius`, half of it"}, {"height", "write `z: [..., ...]`, from where to where"}};
+    for (const char* key : {"forbidden", "keep_out", "keepout", "exclude"}) table.instead.emplace_back(key, "write `kept_free: true`");
+    for (const char* key : {"center", "centre", "position", "origin"})
+        table.instead.emplace_back(key, "write `frame: { x: ..., y: ..., z: ... }`, from which the sides are counted");
     table.after = [](Reader& reader, const Node& node, R&) {
         const auto written = [&](const char* key) { return node.find(key) != nullptr; };  // also wrongly: that is told already
         const bool sides = written("x") || written("y"), radius = written("radius");

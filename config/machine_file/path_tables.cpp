@@ -2,7 +2,10 @@
 
 #include <array>
 #include <charconv>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include "config/reading/codecs.hpp"
 #include "config/reading/collections.hpp"
@@ -93,13 +96,16 @@ Table<PathTablesFile> path_tables_table() {
     return table;
 }
 
+/// Some three million lines: it stands in memory as it is.
+constexpr std::size_t most_program_bytes = std::size_t{64} << 20;
+
 void complete(Reader& reader, PathEntry& entry, const std::string& beside) {
     const auto found = [&](const std::string& written) {
         const std::filesystem::path path(written);
         return (path.is_relative() ? std::filesystem::path(beside) / path : path).lexically_normal().string();
     };
     if (entry.path.file.empty()) return;  // told as missing
-    auto text = read_text(found(entry.path.file), "G-code", "; it is looked up from the machine file's folder");
+    auto text = read_text(found(entry.path.file), "G-code", "; it is looked up from the machine file's folder", most_program_bytes);
     if (!text) {
         reader.problem(entry.at, "config.path_file", text.error().subject + ": " + text.error().what, text.error().remedy);
         return;
@@ -107,11 +113,22 @@ void complete(Reader& reader, PathEntry& entry, const std::string& beside) {
     entry.path.text = std::make_shared<const std::string>(std::move(*text));
     if (entry.tables.empty()) return;
     const auto path = found(entry.tables);
+    if (!std::filesystem::exists(path)) {
+        reader.problem(entry.at, "config.path_file", path + ": there is no such file",
+                       "check the path of `tables`; it is looked up from the machine file's folder");
+        return;
+    }
     auto document = read_document(path);
     Reader own(path);
     own.errors() = std::move(document.errors);
     PathTablesFile file;
     if (document.root.kind != Node::Kind::null) read_table(own, document.root, path_tables_table(), file);
+    std::map<unsigned long, std::string> taken;
+    for (const auto& tool : file.named_tools)
+        if (tool.name.find_first_not_of("0123456789") != std::string::npos) continue;  // told
+        else if (const auto [other, first] = taken.emplace(std::strtoul(tool.name.c_str(), nullptr, 10), tool.name); !first)
+            own.problem_in("tools." + tool.name, "config.tool", "'" + tool.name + "' and '" + other->second + "' are one number",
+                           "write each number once");
     reader.errors().insert(reader.errors().end(), own.errors().begin(), own.errors().end());
     auto& options = entry.path.options;
     for (const auto& tool : file.named_tools)

@@ -1,7 +1,10 @@
 #include "config/reading/codecs.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -31,6 +34,46 @@ void report_range(Reader& reader, const Node& node, const std::string& range) {
     reader.problem(node.at, "config.out_of_range", fmt::format("{} for `{}` is out of range", shown(node), reader.path()), "give " + range);
 }
 
+/// As people write numbers, and texts that they copy from have them, and no program reads.
+struct Rewritten {
+    std::string text;
+    std::string_view because;  ///< empty: nothing to write otherwise
+};
+Rewritten rewritten(std::string_view written) {
+    constexpr std::array<std::string_view, 5> dashes{"\u2212", "\u2013", "\u2014", "\u2010", "\u2011"};
+    constexpr std::array<std::string_view, 5> blanks{"\u00A0", "\u202F", "\u2009", "\u2007", "\u2008"};
+    const auto digit = [&](std::size_t i) { return i < written.size() && std::isdigit(static_cast<unsigned char>(written[i])) != 0; };
+    Rewritten out;
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        const auto begins_with = [&](std::string_view what) { return written.substr(i, what.size()) == what; };
+        const auto dash = std::find_if(dashes.begin(), dashes.end(), begins_with),
+                   blank = std::find_if(blanks.begin(), blanks.end(), begins_with);
+        if (dash != dashes.end() || blank != blanks.end()) {
+            out.because = dash != dashes.end() ? "a dash that only looks like a minus" : "a blank that only looks like one";
+            out.text += dash != dashes.end() ? '-' : ' ';
+            i += (dash != dashes.end() ? dash->size() : blank->size()) - 1;
+        } else if (written[i] == ',' && i > 0 && digit(i - 1) && digit(i + 1)) {
+            out.because = "a decimal comma";
+            out.text += '.';
+        } else if ((written[i] == ' ' || written[i] == '\'') && i > 0 && digit(i - 1) && digit(i + 1)) {
+            out.because = "a mark between its thousands";
+        } else {
+            out.text += written[i];
+        }
+    }
+    return out;
+}
+/// false: there is nothing of the kind.
+bool report_rewritten(Reader& reader, const Node& node, const std::function<bool(const std::string&)>& good) {
+    const auto other = rewritten(node.text);
+    if (other.because.empty() || !good(other.text)) return false;
+    reader.problem(
+        node.at, other.because == "a decimal comma" ? "config.decimal_comma" : "config.number",
+        fmt::format("{} for `{}` has {}", shown(node), reader.path(), other.because),
+        fmt::format("write {}`{}`", other.because == "a decimal comma" ? "a point: " : "it with plain characters: ", other.text));
+    return true;
+}
+
 std::optional<double> read_quantity(Reader& reader, const Node& node, Dimension dimension) {
     const auto unit = unit_of(dimension, reader.axis_unit);
     const auto example = example_of(dimension, reader.axis_unit);
@@ -39,6 +82,10 @@ std::optional<double> read_quantity(Reader& reader, const Node& node, Dimension 
         return std::nullopt;
     }
     const auto found = parse_quantity(node.text, dimension, reader.axis_unit);
+    if (found.problem != QuantityProblem::none && report_rewritten(reader, node, [&](const std::string& other) {
+            return parse_quantity(other, dimension, reader.axis_unit).problem == QuantityProblem::none;
+        }))
+        return std::nullopt;
     switch (found.problem) {
         case QuantityProblem::none: return found.value;
         case QuantityProblem::not_a_number: report_wrong_type(reader, node, "a number with a unit", example); break;
@@ -91,21 +138,35 @@ std::string wanted_text(const Shape& shape, std::string_view axis_unit) {
     return "?";
 }
 
-void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known) {
+void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known, const OtherWords& instead) {
     if (entry.key == "<<") {  // YAML 1.1 had it, YAML 1.2 has not
         reader.problem(entry.at, "config.unknown_key", "`<<` would merge another section, and where a value came from could not be seen",
                        "write the keys out, or use an anchor for the whole section (`&name`, `*name`)");
         return;
     }
-    const auto near = nearest_name(entry.key, known);
+    if (!entry.key.empty() && std::isdigit(static_cast<unsigned char>(entry.key.front())) != 0) {
+        reader.problem(entry.at, "config.unknown_key",
+                       fmt::format("`{}` has no key `{}`: is the comma in front of it a decimal one?", reader.path(), entry.key),
+                       fmt::format("write a point, as in `0.{}`", entry.key));
+        return;
+    }
+    const auto near = entry.key.size() < 2 ? std::string{} : nearest_name(entry.key, known);  // of one letter each other one is as near
     const auto* outer = reader.outer_section_with(entry.key);
+    const bool angle = entry.key.size() == 1 && std::string_view("abcABC").find(entry.key) != std::string_view::npos;
+    if (angle && std::find(known.begin(), known.end(), "rx") != known.end()) {
+        reader.problem(entry.at, "config.unknown_key", fmt::format("`{}` has no key `{}`", reader.path(), entry.key),
+                       "turns are rx, ry, rz, about X, Y, Z; what makers call A, B, C is not the same everywhere");
+        return;
+    }
+    const auto meant = std::find_if(instead.begin(), instead.end(), [&](const auto& word) { return word.first == entry.key; });
     reader.problem(entry.at, "config.unknown_key",
                    reader.path().empty() ? fmt::format("there is no key `{}` here", entry.key)
                                          : fmt::format("`{}` has no key `{}`", reader.path(), entry.key),
-                   outer != nullptr && outer->empty() ? fmt::format("`{}` stands at the top of the file: move it there", entry.key)
-                   : outer != nullptr                 ? fmt::format("it is a key of `{}`: move it there", *outer)
-                   : near.empty()                     ? "known keys: " + joined(known)
-                                                      : fmt::format("did you mean `{}`?", near));
+                   meant != instead.end()               ? meant->second
+                   : outer != nullptr && outer->empty() ? fmt::format("`{}` stands at the top of the file: move it there", entry.key)
+                   : outer != nullptr                   ? fmt::format("it is a key of `{}`: move it there", *outer)
+                   : near.empty()                       ? "known keys: " + joined(known)
+                                                        : fmt::format("did you mean `{}`?", near));
 }
 
 void report_missing_key(Reader& reader, const Node& section, std::string_view key, const FieldInfo& info) {
@@ -124,12 +185,43 @@ void report_wrong_type(Reader& reader, const Node& node, std::string_view wanted
                    example.empty() ? std::string("correct the value") : fmt::format("write for instance `{}`", example));
 }
 
-void report_no_section(Reader& reader, const Node& node, const std::string& key) {
+void report_no_section(Reader& reader, const Node& node, const std::vector<const FieldInfo*>& fields) {
+    const auto needed = std::find_if(fields.begin(), fields.end(), [](const auto* f) { return f->presence == Presence::required; });
+    const bool empty = node.kind == Node::Kind::null || node.text == "true";
+    const std::string key = needed != fields.end() ? (*needed)->key : fields.empty() ? std::string{} : fields.front()->key;
     reader.problem(node.at, "config.wrong_type",
                    reader.path().empty() ? fmt::format("{} is not a section of `key: value` lines", shown(node))
                                          : fmt::format("{} for `{}` is not a section of `key: value` lines", shown(node), reader.path()),
                    key.empty() ? std::string("correct the value")
-                               : fmt::format("write its keys indented below it, such as `{}: ...`, or in braces: {{ {}: ... }}", key, key));
+                               : fmt::format("write its keys indented below it, such as `{}: ...`, or in braces: {{ {}: ... }}{}", key, key,
+                                             needed == fields.end() && empty ? "; `{}` where nothing of it is needed" : ""));
+}
+
+void report_no_names(Reader& reader, const Node& node) {
+    reader.problem(node.at, "config.wrong_type",
+                   fmt::format("{} for `{}` is not a section of `name: ...` lines", shown(node), reader.path()),
+                   node.kind == Node::Kind::list ? "give each a name in place of its `-`, in a line `name: ...` or in braces: { name: ... }"
+                                                 : "write lines `name: ...` indented below it, or in braces: { name: ... }");
+}
+
+bool report_key_for_name(Reader& reader, const Entry& entry, const Shape& element) {
+    if (element.kind != Shape::Kind::section || !element.section || entry.value.kind == Node::Kind::map) return false;
+    const auto& fields = element.section->fields;
+    if (std::none_of(fields.begin(), fields.end(), [&](const auto& f) { return f.key == entry.key; })) return false;
+    reader.problem(entry.at, "config.name_missing", fmt::format("`{}` has `{}` where a name comes first", reader.path(), entry.key),
+                   fmt::format("write a name in front, and this in its section: `name: {{ {}: ... }}`", entry.key));
+    return true;
+}
+
+bool report_decimal_comma(Reader& reader, const Entry& before, const Entry& behind) {
+    const bool digits = !behind.key.empty() && std::isdigit(static_cast<unsigned char>(behind.key.front())) != 0;
+    if (!digits || behind.value.kind != Node::Kind::null || before.value.kind != Node::Kind::scalar || !parse_integer(before.value.text))
+        return false;
+    const Reader::Scope scope(reader, before.key, before.at);
+    reader.problem(before.value.at, "config.decimal_comma",
+                   fmt::format("`{},{}` for `{}` has a decimal comma", before.value.text, behind.key, reader.path()),
+                   fmt::format("write a point: `{}.{}`", before.value.text, behind.key));
+    return true;
 }
 
 std::optional<std::int64_t> read_integer(Reader& reader, const Node& node, std::int64_t minimum, std::int64_t maximum) {
@@ -178,6 +270,10 @@ Codec<std::string> text() {
 Codec<std::string> name() {
     auto c = text();
     c.read = [any = c.read](Reader& reader, const Node& node, std::string& out) {
+        if (node.kind != Node::Kind::scalar) {
+            report_wrong_type(reader, node, "a name", "arm_1");
+            return false;
+        }
         std::string value;
         if (!any(reader, node, value)) return false;
         bool good = std::isalpha(static_cast<unsigned char>(value.front())) != 0 && value.size() <= 40;
@@ -217,7 +313,9 @@ Codec<double> number(double minimum, double maximum) {
     c.read = [minimum, maximum](Reader& reader, const Node& node, double& out) {
         const auto value = node.kind == Node::Kind::scalar && !node.quoted ? parse_number(node.text) : std::nullopt;
         if (!value) {
-            report_wrong_type(reader, node, "a number", "1.5");
+            const auto good = [](const std::string& other) { return parse_number(other).has_value(); };
+            if (node.kind != Node::Kind::scalar || !report_rewritten(reader, node, good))
+                report_wrong_type(reader, node, "a number", "1.5");
             return false;
         }
         if (*value < minimum || *value > maximum) {
@@ -321,7 +419,15 @@ Codec<std::pair<double, double>> interval(Dimension dimension) {
     c.read = [dimension](Reader& reader, const Node& node, std::pair<double, double>& out) {
         if (node.kind != Node::Kind::list || node.items.size() != 2) {
             const auto unit = unit_of(dimension, reader.axis_unit);
-            report_wrong_type(reader, node, "a pair of values", fmt::format("[0 {0}, 500 {0}]", unit));
+            const auto& items = node.items;
+            const bool comma = items.size() > 2 && std::any_of(items.begin(), items.end(), [](const Node& item) {
+                                   return item.kind == Node::Kind::scalar && parse_integer(item.text);
+                               });
+            if (comma)
+                reader.problem(node.at, "config.decimal_comma",
+                               fmt::format("`{}` has {} values, not two: is a comma in it a decimal one?", reader.path(), items.size()),
+                               fmt::format("write points, such as `[0.5 {0}, 500 {0}]`", unit));
+            else report_wrong_type(reader, node, "a pair of values", fmt::format("[0 {0}, 500 {0}]", unit));
             return false;
         }
         const auto low = read_quantity(reader, node.items[0], dimension), high = read_quantity(reader, node.items[1], dimension);

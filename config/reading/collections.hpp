@@ -60,11 +60,12 @@ Codec<std::vector<M>> by_name(Codec<M> element, Name name) {
     c.read = [element, name](Reader& reader, const Node& node, std::vector<M>& out) {
         if (node.kind == Node::Kind::null) return true;
         if (node.kind != Node::Kind::map) {
-            report_wrong_type(reader, node, "a section of `name: ...` lines", {});
+            report_no_names(reader, node);
             return false;
         }
         bool good = true;
         for (const auto& entry : node.entries) {
+            if (report_key_for_name(reader, entry, element.shape)) return false;
             const Reader::Scope scope(reader, entry.key, entry.at);
             M value{};
             name(value) = entry.key;
@@ -91,8 +92,8 @@ Codec<std::optional<M>> maybe(Codec<M> inner) {
 
 /// A sub-section whose keys go to the same object.
 template <class T>
-Field<T> group(std::string key, std::string doc, std::vector<Field<T>> fields) {
-    Table<T> table{key, doc, std::move(fields), {}, {}};
+Field<T> group(std::string key, std::string doc, std::vector<Field<T>> fields, OtherWords instead = {}) {
+    Table<T> table{key, doc, std::move(fields), {}, {}, std::move(instead)};
     return field_at<T>(
         key, [](T& object) -> T& { return object; }, section(std::move(table)), std::move(doc));
 }

@@ -1,6 +1,7 @@
 #include "config/reading/document.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
@@ -69,6 +71,25 @@ std::optional<Position> tab_in_indentation(std::string_view text, int line) {
     return std::nullopt;
 }
 
+/// yaml-cpp takes a quote that is never closed for one that is closed at the end of the file, and all between them for one text. That can be the last quoted
+/// text alone. `last`: where that begins; nothing: it is closed.
+std::optional<Position> open_quote(std::string_view text, std::optional<Position> last) {
+    if (!last) return std::nullopt;
+    std::size_t at = 0;
+    for (int line = 1; line < last->line && at != std::string_view::npos; ++line)
+        if (at = text.find('\n', at); at != std::string_view::npos) ++at;
+    if (at == std::string_view::npos) return std::nullopt;
+    at = text.find_first_of("\"'|>", at + static_cast<std::size_t>(last->column) - 1);  // behind an anchor
+    if (at == std::string_view::npos || text[at] == '|' || text[at] == '>') return std::nullopt;
+    const char quote = text[at];
+    for (std::size_t i = at + 1; i < text.size(); ++i) {
+        if (quote == '"' && text[i] == '\\') ++i;
+        else if (text[i] == quote && quote == '\'' && i + 1 < text.size() && text[i + 1] == quote) ++i;
+        else if (text[i] == quote) return std::nullopt;
+    }
+    return position_at(text, at);
+}
+
 /// Only says where documents begin.
 class DocumentStarts final : public YAML::EventHandler {
 public:
@@ -92,6 +113,25 @@ std::optional<Position> second_document(const std::string& text) {
     if (!parser.HandleNextDocument(starts) || !parser.HandleNextDocument(starts)) return std::nullopt;
     return starts.at;
 }
+
+/// yaml-cpp's words are those of its parser. Where: the next thing that it could not fit in, often a line further on.
+struct SyntaxWords {
+    std::string_view parsers, what, remedy;
+};
+constexpr std::array<SyntaxWords, 6> syntax_words{{
+    {"illegal map value", "a `:` stands where no key can be",
+     "is the `:`, or the blank behind it, missing in the line in front? a text with `: ` in it wants quotes"},
+    {"end of map not found", "this line begins in a column in which none of the lines above it does",
+     "begin all keys of a section in the same column"},
+    {"end of sequence not found", "this line begins in a column in which none of the lines above it does",
+     "begin all `-` of a list in the same column"},
+    {"end of map flow not found", "a `{` in front of this is not closed, or a comma is missing behind it",
+     "close it with `}`, and part its keys by commas"},
+    {"end of sequence flow not found", "a `[` in front of this is not closed, or a comma is missing behind it",
+     "close it with `]`, and part its values by commas"},
+    {"the referenced anchor is not defined", "there is no anchor `&name` for this `*name`",
+     "write the anchor in front of it, or correct the name"},
+}};
 
 class Converter {
 public:
@@ -125,6 +165,9 @@ public:
                 return node;
             }
             node.quoted = from.Tag() == "!";
+            if (node.quoted &&
+                (!last_quoted_ || std::pair(node.at.line, node.at.column) > std::pair(last_quoted_->line, last_quoted_->column)))
+                last_quoted_ = node.at;
         } else if (from.IsSequence()) {
             node.kind = Node::Kind::list;
             for (const auto& item : from) node.items.push_back(convert(item, node.at, depth + 1));
@@ -134,6 +177,8 @@ public:
         }
         return node;
     }
+
+    [[nodiscard]] std::optional<Position> last_quoted() const noexcept { return last_quoted_; }
 
 private:
     void add_entry(Node& node, const YAML::Node& key, const YAML::Node& value, int depth) {
@@ -159,6 +204,7 @@ private:
 
     Document& document_;
     std::size_t count_ = 0, bytes_ = 0;
+    std::optional<Position> last_quoted_;
     bool full_ = false;
 };
 
@@ -211,19 +257,31 @@ Document parse_document(std::string file, std::string_view text) {
             fail("config.empty", {}, "the file is empty", "start from config/machines/minimal.yaml");
             return document;
         }
-        document.root = Converter(document).convert(root, {1, 1}, 0);
+        Converter converter(document);
+        document.root = converter.convert(root, {1, 1}, 0);
+        if (const auto open = open_quote(text, converter.last_quoted())) {
+            document.errors.clear();  // what it swallowed is missed in vain
+            document.root = {};
+            fail("config.syntax", *open, "the quote that begins here is never closed: all that follows would be one text",
+                 "close it in its line, or leave it out");
+        }
     } catch (const YAML::Exception& e) {
         const Position at = e.mark.is_null() || e.mark.line < 0 ? Position{} : Position{e.mark.line + 1, e.mark.column + 1};
         if (const auto tab = tab_in_indentation(text, at.line))
             fail("config.syntax", *tab, "the line is indented with a tab, which YAML does not allow", "indent with spaces");
-        else fail("config.syntax", at, fmt::format("this is no YAML: {}", e.msg), "check indentation, quotes and brackets");
+        else {
+            const auto words = std::find_if(syntax_words.begin(), syntax_words.end(), [&](const auto& w) { return w.parsers == e.msg; });
+            const bool known = words != syntax_words.end();
+            fail("config.syntax", at, fmt::format("this is no YAML: {}", known ? words->what : e.msg),
+                 std::string(known ? words->remedy : "check indentation, quotes and brackets"));
+        }
     } catch (const std::exception& e) {
         fail("config.syntax", {}, fmt::format("this is no YAML: {}", e.what()), "check indentation, quotes and brackets");
     }
     return document;
 }
 
-Result<std::string> read_text(const std::string& path, std::string_view kind, std::string_view where) {
+Result<std::string> read_text(const std::string& path, std::string_view kind, std::string_view where, std::size_t most) {
     const auto fail = [&](std::string code, std::string what, std::string remedy) {
         return Error{std::move(code), path, std::move(what), std::move(remedy)};
     };
@@ -233,9 +291,8 @@ Result<std::string> read_text(const std::string& path, std::string_view kind, st
     if (!std::filesystem::is_regular_file(status))
         return fail("config.not_a_file", "this is not a regular file", fmt::format("give the path of a {} file", kind));
     const auto size = std::filesystem::file_size(path, error);
-    if (!error && size > max_file_bytes)
-        return fail("config.too_large", fmt::format("the file has {} bytes, more than {}", size, max_file_bytes),
-                    "is this the right file?");
+    if (!error && size > most)
+        return fail("config.too_large", fmt::format("the file has {} bytes, more than {}", size, most), "is this the right file?");
     std::ifstream stream(path, std::ios::binary);
     if (!stream)
         return fail("config.unreadable", fmt::format("the file cannot be opened: {}", std::strerror(errno)), "check its permissions");

@@ -59,9 +59,10 @@ struct Document {
 /// config.empty, config.several_documents.
 [[nodiscard]] Document parse_document(std::string file, std::string_view text);
 
-/// The whole of a file of at most max_file_bytes. `kind` and `where` are for messages: "YAML"; "; it is looked up from ...".
+/// The whole of a file of at most `most` bytes. `kind` and `where` are for messages: "YAML"; "; it is looked up from ...".
 /// Errors: config.no_file, config.not_a_file, config.too_large, config.unreadable.
-[[nodiscard]] Result<std::string> read_text(const std::string& path, std::string_view kind, std::string_view where = {});
+[[nodiscard]] Result<std::string> read_text(const std::string& path, std::string_view kind, std::string_view where = {},
+                                            std::size_t most = max_file_bytes);
 
 /// Reads and parses. Further errors: config.no_file, config.not_a_file, config.unreadable.
 [[nodiscard]] Document read_document(const std::string& path);

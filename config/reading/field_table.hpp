@@ -9,6 +9,7 @@
 //       }};
 //   }
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -67,11 +68,15 @@ struct Field {
     std::function<bool(Reader&, const Node&, T&)> read;
 };
 
+/// Words that people write for keys, and what they are to write instead.
+using OtherWords = std::vector<std::pair<std::string, std::string>>;
+
 template <class T>
 struct Table {
     std::string title, doc;
     std::vector<Field<T>> fields;
     std::function<void(Reader&, const Node&, T&)> before, after;  ///< rules over several keys
+    OtherWords instead{};
 
     [[nodiscard]] std::shared_ptr<const SectionInfo> info() const {
         auto out = std::make_shared<SectionInfo>(SectionInfo{title, doc, {}});
@@ -136,18 +141,26 @@ void include_fields(std::vector<Field<T>>& into, Get get, const Table<M>& table)
 // --- reading ------------------------------------------------------------------------------------------------------------
 
 /// Reports an unknown key with the nearest known one.
-void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known);
+void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known, const OtherWords& instead);
+/// `{ first: 0,2 m }` is `first: 0` and a key `2 m` without a value: told of the first as what it is. false: `behind` is something else.
+bool report_decimal_comma(Reader& reader, const Entry& before, const Entry& behind);
 void report_missing_key(Reader& reader, const Node& section, std::string_view key, const FieldInfo& info);
 void report_wrong_type(Reader& reader, const Node& node, std::string_view wanted, std::string_view example);
-/// `key`: one that it has.
-void report_no_section(Reader& reader, const Node& node, const std::string& key);
+/// Names one of the keys, one that it needs where there is such.
+void report_no_section(Reader& reader, const Node& node, const std::vector<const FieldInfo*>& fields);
+/// Of what wants a name in front of each of its entries.
+void report_no_names(Reader& reader, const Node& node);
+/// A key of the element where its name belongs, `workspace: { x: [...] }`. false: it may be a name.
+bool report_key_for_name(Reader& reader, const Entry& entry, const Shape& element);
 /// What a value of this shape is called in messages, and an example of it.
 [[nodiscard]] std::string wanted_text(const Shape& shape, std::string_view axis_unit);
 
 template <class T>
 bool read_table(Reader& reader, const Node& node, const Table<T>& table, T& object) {
     if (node.kind != Node::Kind::map) {
-        report_no_section(reader, node, table.fields.empty() ? std::string{} : table.fields.front().info.key);
+        std::vector<const FieldInfo*> fields;
+        for (const auto& f : table.fields) fields.push_back(&f.info);
+        report_no_section(reader, node, fields);
         return false;
     }
     const auto errors_before = reader.errors().size();
@@ -155,15 +168,20 @@ bool read_table(Reader& reader, const Node& node, const Table<T>& table, T& obje
     std::vector<std::string> known;
     for (const auto& f : table.fields) known.push_back(f.info.key);
     const Reader::Section open(reader, known);
+    const Entry* before = nullptr;
+    std::vector<const Entry*> told;
     for (const auto& entry : node.entries) {
         bool found = false;
         for (const auto& key : known) found = found || key == entry.key;
-        if (!found) report_unknown_key(reader, entry, known);
+        if (!found && before != nullptr && report_decimal_comma(reader, *before, entry)) told.push_back(before);
+        else if (!found) report_unknown_key(reader, entry, known, table.instead);
+        before = &entry;
     }
     for (const auto& f : table.fields) {
         const Entry* found = nullptr;
         for (const auto& entry : node.entries)
             if (entry.key == f.info.key) found = &entry;
+        if (found && std::find(told.begin(), told.end(), found) != told.end()) continue;
         if (found) {
             const Reader::Scope scope(reader, f.info.key, found->at);
             f.read(reader, found->value, object);

@@ -50,10 +50,11 @@ private:
     /// A member that could follow no path would be missed by its group alone, and late.
     void check_group_members() {
         for (const auto& group : config_.axis_groups)
-            for (const auto& member : group.members)
+            for (std::size_t i = 0; i < group.members.size(); ++i)
                 for (const auto& binding : config_.axes) {
+                    const auto& member = group.members[i];
                     if (binding.axis.name != member || (!binding.axis.encoder && binding.axis.modulo <= 0)) continue;
-                    problems_.add("group.member_kind", "axis_groups." + group.name,
+                    problems_.add("group.member_kind", fmt::format("axis_groups.{}.members.{}", group.name, i),
                                   fmt::format("axis '{}' {}, and a group cannot move it", member,
                                               binding.axis.encoder ? "only measures" : "is a modulo axis"),
                                   binding.axis.encoder ? "take it out of the group" : "take it out of the group, or its `modulo`");
@@ -80,14 +81,18 @@ private:
             problems_.add("machine.emergency_stop_time", "emergency_stop.power_off_after", "a time below 0", "use for instance 500 ms");
     }
 
+    /// Names head the columns of a trace, stand in lists on the command line and in words over the socket.
+    void check_characters(std::string_view section, const std::string& name) {
+        if (name.find_first_of(" \t\n,;\"'[]=/") != std::string::npos)
+            problems_.add("config.name_characters", fmt::format("{}.{}", section, name),
+                          fmt::format("the name '{}' has a blank or a mark that separates names elsewhere", name),
+                          "use letters, digits, '_' and '-'");
+    }
+
     void check_names() {
         problems_.duplicates(axes_, "axes");
-        // They head the columns of a trace, stand in lists on the command line and in words over the socket.
-        for (const auto& name : axes_)
-            if (name.find_first_of(" \t\n,;\"'[]=/") != std::string::npos)
-                problems_.add("config.name_characters", fmt::format("axes.{}", name),
-                              fmt::format("the name '{}' has a blank or a mark that separates names elsewhere", name),
-                              "use letters, digits, '_' and '-'");
+        for (const auto& name : axes_) check_characters("axes", name);
+        for (const auto& group : config_.axis_groups) check_characters("axis_groups", group.name);
         problems_.duplicates(inputs_, "io.inputs");
         problems_.duplicates(outputs_, "io.outputs");
         problems_.duplicates(programs_, "programs");

@@ -11,6 +11,7 @@
 #include "runtime/check/ebus_remarks.hpp"
 #include "runtime/check/encoder_check.hpp"
 #include "runtime/check/position_loop_check.hpp"
+#include "runtime/check/reach_remarks.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
 namespace taktwerk::runtime {
@@ -23,6 +24,8 @@ using axes::HomingKind;
 constexpr double usual_rpm = 6000;             // hardly a servo motor turns faster
 constexpr double usual_settling_s = 1;         // who waits longer for in-position mostly meant ms
 constexpr double following_of_velocity_s = 1;  // a window as wide as the way of a second at full speed is none
+
+constexpr double usual_ramp_s = 20;  // who takes longer to its velocity mostly meant another unit
 
 constexpr int full_percent = 75;  // of the cycle: what mailboxes, recovery and lateness need besides process data
 
@@ -37,6 +40,29 @@ public:
 double units_per_motor_turn(const AxisConfig& axis) noexcept {
     const auto& gearing = axis.gearing;
     return static_cast<double>(gearing.load_revolutions) * gearing.feed / static_cast<double>(gearing.motor_revolutions);
+}
+
+/// From standstill to that velocity. No jerk: it is not limited.
+double ramp_seconds(double velocity, double acceleration, double jerk) noexcept {
+    if (jerk <= 0 || !std::isfinite(jerk)) return velocity / acceleration;
+    return velocity * jerk >= acceleration * acceleration ? velocity / acceleration + acceleration / jerk : 2 * std::sqrt(velocity / jerk);
+}
+
+/// An axis that ramps so slowly is refused for its emergency stop; what a group does by default is nobody's error.
+void group_defaults(Remarks& remarks, const MachineConfig& config) {
+    for (const auto& group : config.axis_groups) {
+        const auto& d = group.default_dynamics;
+        if (!(d.velocity > 0 && d.acceleration > 0)) continue;
+        const double seconds = ramp_seconds(d.velocity, d.acceleration, d.jerk);
+        if (!(seconds > usual_ramp_s)) continue;
+        const bool by_jerk = ramp_seconds(d.velocity, d.acceleration, 0) < seconds / 2;
+        const auto& u = group.unit;
+        remarks.add("ramp", fmt::format("groups.{}.default", group.name),
+                    fmt::format("from standstill to {:g} {}/s it takes {:.0f} s", d.velocity, u, seconds),
+                    by_jerk ? fmt::format("is its jerk of {:g} {}/s3 meant so? with {:g} {}/s3 the acceleration is there within 0.1 s",
+                                          d.jerk, u, 10 * d.acceleration, u)
+                            : fmt::format("is its acceleration of {:g} {}/s2 meant so?", d.acceleration, u));
+    }
 }
 
 void limits(Remarks& remarks, const AxisBinding& binding, const std::string& here) {
@@ -242,6 +268,8 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
         if (binding.analog)
             for (auto& remark : analog_remarks(binding, here)) out.found.push_back(std::move(remark));
     }
+    group_defaults(out, config);
+    for (auto& remark : reach_remarks(config)) out.found.push_back(std::move(remark));
     for (const auto& point : config.io) point_limits(out, point);
     for (const auto& point : config.io)
         if (!config.emergency_stop.input.empty() && point.name == config.emergency_stop.input && point.inverted)

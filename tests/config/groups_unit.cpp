@@ -8,6 +8,7 @@
 #include "axes/group/workspace.hpp"
 #include "axes/kinematics/kinematics.hpp"
 #include "config/machine_file/machine_loader.hpp"
+#include "runtime/check/reach_remarks.hpp"
 
 namespace taktwerk::config {
 namespace {
@@ -44,6 +45,54 @@ TEST(GroupsOfAFile, TheArmStandsWhereItsAxesSay) {
     EXPECT_NEAR(at.pose.position[2], 35, 1e-9);
     EXPECT_TRUE(arm.kinematics->limits_of({0, 119, 0, 0, 0, 0}).ok());
     EXPECT_FALSE(arm.kinematics->limits_of({0, 121, 0, 0, 0, 0}).ok());
+}
+
+// Its tool's point comes 350 + 120 from the base at X = 1000 at most; the cell ends at X = 300, 230 before that.
+TEST(GroupsOfAFile, ARoomThatTheToolNeverComesToIsRemarked) {
+    auto machine = loaded_groups().machine;
+    EXPECT_TRUE(runtime::reach_remarks(machine).empty()) << "the lift has no ends: nothing is known";
+    for (auto& binding : machine.axes)
+        if (binding.axis.name == "z") binding.axis.limits.position_min = 0, binding.axis.limits.position_max = 100;
+    const auto found = runtime::reach_remarks(machine);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].code, "remark.reach");
+    EXPECT_EQ(found[0].subject, "groups.arm.workspace.cell");
+    auto moved = *machine.axis_groups[0].workspace;
+    moved.rooms[0].middle.position[0] = 1000;
+    machine.axis_groups[0].workspace = std::make_shared<const axes::Workspace>(moved);
+    EXPECT_TRUE(runtime::reach_remarks(machine).empty()) << "a cell around the arm; the post is to be kept free, wherever it stands";
+}
+
+// Of 200 and 150 mm and a gripper of 120 mm; its base stands at X = 1000.
+TEST(GroupsOfAFile, ARoomThatOneOfItsToolsComesToIsNotRemarked) {
+    auto machine = loaded_groups().machine;
+    for (auto& binding : machine.axes)
+        if (binding.axis.name == "z") binding.axis.limits.position_min = 0, binding.axis.limits.position_max = 100;
+    auto& arm = machine.axis_groups[0];
+    auto space = *arm.workspace;
+    space.rooms[0].middle.position = {1450, 0, 30};
+    space.rooms[0].half = {10, 10, 50};
+    arm.workspace = std::make_shared<const axes::Workspace>(space);
+    EXPECT_TRUE(runtime::reach_remarks(machine).empty()) << "the gripper, which is selected";
+    arm.equipment.selected_tool = 31;
+    EXPECT_TRUE(runtime::reach_remarks(machine).empty()) << "the pen does not; a program may select the gripper";
+    arm.equipment.tools = {};
+    arm.equipment.selected_tool = 0;
+    const auto found = runtime::reach_remarks(machine);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NE(found[0].what.find("no nearer to this room than 90"), std::string::npos) << found[0].what << ": from 1350 to 1440";
+}
+
+TEST(GroupsOfAFile, RoomsThatLeaveTheToolNoPlaceAreRemarked) {
+    auto machine = loaded_groups().machine;
+    for (auto& binding : machine.axes)
+        if (binding.axis.name == "z") binding.axis.limits.position_min = 0, binding.axis.limits.position_max = 100;
+    axes::Workspace space{{{.name = "press", .kept_free = true, .half = {500, 500, 500}}}};
+    space.rooms[0].middle.position = {1000, 0, 0};
+    machine.axis_groups[0].workspace = std::make_shared<const axes::Workspace>(space);
+    const auto found = runtime::reach_remarks(machine);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].subject, "groups.arm.workspace");
 }
 
 // Lengths in the group's unit, angles in rad, masses in kg, inertias in kg m2.

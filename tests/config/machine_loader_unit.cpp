@@ -12,6 +12,7 @@
 #include <iterator>
 
 #include "config/drive_file/drive_loader.hpp"
+#include "config/reading/document.hpp"
 
 namespace taktwerk::config {
 namespace {
@@ -126,6 +127,27 @@ TEST(HostileFile, NestedTooDeeplyIsOneClearError) {
     }
     const auto errors = must_fail(written("deep.yaml", "version: 1\nname: " + std::string(60, '[') + std::string(60, ']')));
     EXPECT_THAT(one_a_line(errors), HasSubstr("nested more than 40 levels deep"));
+}
+
+TEST(PathTables, OneNumberOfAToolIsWrittenOnce) {
+    written("one_tool.ngc", "M30\n");
+    written("one_tool_tables.yaml", "tools:\n  1: { z: 5 mm }\n  01: { z: 4 mm }\n");
+    const auto errors = must_fail(written("one_tool.yaml",
+                                          "version: 1\nname: p\ncycle: 1 ms\nbus: { interface: simulated, slaves: [] }\naxes: {}\n"
+                                          "paths: { plate: { file: one_tool.ngc, tables: one_tool_tables.yaml } }\n"));
+    ASSERT_EQ(errors.size(), 1u) << one_a_line(errors);
+    EXPECT_THAT(errors[0].subject, testing::EndsWith("one_tool_tables.yaml:3:3"));
+    EXPECT_THAT(errors[0].what, HasSubstr("'01' and '1' are one number"));
+}
+
+// What yaml-cpp says of them is its parser's word.
+TEST(Syntax, IsToldInWordsOfWhoWritesTheFile) {
+    const auto told = [](const std::string& text) { return one_a_line(parse_document("f.yaml", text).errors); };
+    EXPECT_THAT(told("a:\n  b: 1\n c: 2\n"), HasSubstr("begins in a column in which none of the lines above it does"));
+    EXPECT_THAT(told("a: { b: 1, c: 2\nd: 3\n"), HasSubstr("a `{` in front of this is not closed"));
+    EXPECT_THAT(told("a: [1, 2\nd: 3\n"), HasSubstr("a `[` in front of this is not closed"));
+    EXPECT_THAT(told("a:\n  tool:x\n  frame: y\n"), HasSubstr("is the `:`, or the blank behind it, missing in the line in front?"));
+    EXPECT_THAT(told("a: *b\n"), HasSubstr("there is no anchor `&name`"));
 }
 
 TEST(HostileFile, ThatIsHugeIsRefusedBeforeItIsParsed) {
@@ -545,6 +567,27 @@ TEST(MachineLoader, WhatIsLegalButPerhapsNotMeantIsAWarning) {
     EXPECT_THAT(one_a_line(loaded.warnings),
                 testing::AllOf(HasSubstr("axis table is left out"), HasSubstr("following error of axis table is not watched")));
     EXPECT_EQ(loaded.warnings.size(), 2u) << "a virtual axis has no following error";
+}
+
+// A program of a CAM system has a hundred thousand lines and more; what people write has fewer.
+TEST(MachineLoader, AProgramInGCodeMayBeLarge) {
+    auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-large-XXXXXX").string();
+    const std::filesystem::path folder = ::mkdtemp(pattern.data());
+    {
+        std::ofstream program(folder / "part.ngc");
+        program << "G21 G90 F600\n";
+        for (int i = 0; i < 100'000; ++i) program << "G1 X" << i % 100 << ".125 Y" << i % 7 << ".250\n";
+        program << "M30\n";
+        std::ofstream(folder / "mill.yaml") << "version: 1\nname: mill\ncycle: 1 ms\nbus: { interface: simulated, slaves: [] }\n"
+                                               "axes:\n  x: { unit: mm, gearing: { counts_per_revolution: 36000, feed: 10 mm }, limits: "
+                                               "{ velocity: 100 mm/s, acceleration: 1000 mm/s2, jerk: none } }\n"
+                                               "paths:\n  part: { file: part.ngc }\n";
+    }
+    ASSERT_GT(std::filesystem::file_size(folder / "part.ngc"), max_file_bytes);
+    const auto machine = must_load((folder / "mill.yaml").string()).machine;
+    ASSERT_EQ(machine.paths.size(), 1u);
+    EXPECT_EQ(machine.paths[0].text->size(), std::filesystem::file_size(folder / "part.ngc"));
+    std::filesystem::remove_all(folder);
 }
 
 TEST(MachineLoader, ProgramsAreFoundBesideTheFileOrInThePath) {

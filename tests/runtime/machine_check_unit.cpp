@@ -32,9 +32,9 @@ template <class Change>
 Error remark(Change change) {
     auto config = machine_config(2);
     change(config);
-    EXPECT_TRUE(check(config).empty());
+    EXPECT_TRUE(check(config).empty()) << check(config).front().what;
     const auto found = remarks(config, {}, 4);
-    EXPECT_LE(found.size(), 1u);
+    EXPECT_LE(found.size(), 1u) << found.back().subject << ": " << found.back().what;
     for (const auto& one : found) EXPECT_FALSE(one.remedy.empty()) << one.code;
     return found.empty() ? Error{} : found[0];
 }
@@ -347,6 +347,22 @@ TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
                   b.axis.control.kv = 101;  // a tenth of the rate is 100
               }).subject,
               "axes.x.control.kv");
+    // 2 sqrt(v/j) = 2 sqrt(100/0.5) = 28 s
+    const auto default_of = [](double acceleration, double jerk) {
+        return remark([&](MachineConfig& m) {
+            axes::AxisGroupConfig group;
+            group.name = "arm";
+            group.members = {"x", "y"};
+            group.default_dynamics = {100, acceleration, acceleration, jerk};
+            m.axis_groups.push_back(group);
+        });
+    };
+    const auto slow = default_of(1000, 0.5);
+    EXPECT_EQ(slow.subject, "groups.arm.default");
+    EXPECT_TRUE(contains(slow.what, "28 s")) << slow.what;
+    EXPECT_TRUE(contains(slow.remedy, "jerk of 0.5")) << slow.remedy;
+    EXPECT_TRUE(contains(default_of(2, 1000).remedy, "acceleration of 2")) << default_of(2, 1000).remedy;
+    EXPECT_EQ(default_of(1000, 10000).code, "");
     EXPECT_EQ(remark([](MachineConfig& m) { m.bus.lost_frames_limit = 11; }).code, "remark.watchdog_below_limit") << "10 ms";
     EXPECT_EQ(remark([](MachineConfig& m) {
                   ProgramConfig program;
