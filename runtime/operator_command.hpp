@@ -71,7 +71,7 @@ enum class OperatorAction : std::uint8_t {
     group_halt,  ///< each member as `stop`: while the group moves, along its path; always allowed. People's come as levels of the members
     group_interrupt,  ///< comes to rest on the path and keeps its commands, whoever moves it [refused_by_axis: group_disabled, in_error_stop,
                       ///< state_forbids while it is interrupted already]
-    group_continue,  ///< goes on behind a group_interrupt; not behind what a program has interrupted (nothing_interrupted)
+    group_continue,  ///< goes on behind a group_interrupt; not behind what a program has interrupted (nothing_interrupted). Of both the program's is left
     ///< [not_possible_now (interlocked) while the emergency stop holds; not_at_interruption; stale when given before a stop of
     ///< a member]
     group_override,  ///< value = 0 to 1, whoever moves it; stays until it is changed. The smallest of it and its members' acts [bad_value]
@@ -141,6 +141,7 @@ struct CommandAnswer {
     axes::JogEnd jog_end = axes::JogEnd::none;
     axes::AxisRef limiting{};                       ///< whose limit it is; invalid: no axis'
     std::uint8_t room = axes::PathHindrance::none;  ///< of the workspace: which (MachineLayout::GroupInfo::rooms)
+    bool waits_for_program = false;                 ///< group_continue, accepted: its program has interrupted it, too, and moves it or not
 };
 static_assert(std::is_trivially_copyable_v<CommandAnswer>);
 

@@ -47,6 +47,8 @@ AxisGroup::AxisGroup(AxisGroupConfig config, std::span<Axis> axes, std::span<con
 
 void AxisGroup::fire(GroupEvent event) noexcept {
     if (const auto to = next_state(state_, event)) state_ = *to;
+    // Whatever has ended its commands: what a person holds nobody else lets go.
+    if (hand_.holds && state_ == GroupState::GroupStandby) interrupted_ = true;
 }
 
 void AxisGroup::abort_all() noexcept {
@@ -57,7 +59,7 @@ void AxisGroup::abort_all() noexcept {
     if (interrupted_ && !members_.led()) run_.clear();  // nobody goes on with it
     forget_path();
     interrupting_ = 0;
-    interrupted_ = begun_ = false;
+    interrupted_ = hand_.program_interrupts = begun_ = false;
 }
 
 void AxisGroup::leave(GroupEvent event) noexcept {
@@ -80,7 +82,7 @@ void AxisGroup::fail(std::uint16_t error, std::uint8_t place) noexcept {
     if (interrupted_ && !members_.led()) run_.clear();
     forget_path();
     interrupting_ = lock_ = 0;
-    interrupted_ = begun_ = false;
+    interrupted_ = hand_.program_interrupts = begun_ = false;
     run_.stop({}, Override{});
     tracking_.release();
 }
@@ -132,7 +134,7 @@ void AxisGroup::set_mode(OperatingMode mode) noexcept {
     if (setup == hand_.setup) return;
     hand_.setup = setup;
     run_.keep_tool_below(setup && config_.kinematics ? setup_velocity_of(config_) : unlimited_velocity);
-    if (setup) halt();
+    if (setup) come_to_rest();
     publish();
 }
 
@@ -405,8 +407,8 @@ JointVector AxisGroup::here() const noexcept {
 void AxisGroup::publish() noexcept {
     view_.state = state_;
     view_.interrupted = interrupted_;
-    hand_.holds = hand_.holds && (interrupted_ || interrupting_ != 0);
     view_.held = hand_.holds;
+    view_.program_interrupts = hand_.program_interrupts;
     view_.member_count = static_cast<std::uint8_t>(members_.count());
     view_.kinematics = has_all_joints(config_.kinematics.get(), members_);
     view_.members = members_.refs();

@@ -49,11 +49,18 @@ public:
     void service() { run_.service(); }
 
     // --- the machine's hand ----------------------------------------------------------------------------------------------
-    /// As MC_GroupHalt, whoever commands it. What is interrupted, and stands, ends likewise.
+    /// A person stops it: as MC_GroupHalt, whoever commands it. What is interrupted ends likewise, and what he holds.
     void halt() noexcept;
-    /// While it is interrupted, or comes to that: a person wants it so, and no MC_GroupContinue goes on (held_by_person). Ends with the interruption.
-    void hold(bool holds) noexcept;
-    /// Whoever commanded it is gone: halts, forgets what was interrupted or waits, gives up the lock of a stop.
+    /// The machine stops it (another mode, a key that is let go): likewise, but what a person holds stays held.
+    void come_to_rest() noexcept;
+    /// A person interrupts it: as MC_GroupInterrupt, whoever commands it. What its program has interrupted is held as it is. While it is held no MC_GroupContinue goes on
+    /// (held_by_person), and what would begin at once waits. Nothing that a program or the machine does ends that but MC_GroupDisable: not a stop, an error, the end of a program,
+    /// another mode. Errors: as of MC_GroupInterrupt, and nothing has changed.
+    ErrorId hold() noexcept;
+    /// He lets it go: what he has interrupted goes on, or what has taken its place meanwhile. What its program has interrupted it keeps so. Errors, and it is held on:
+    /// nothing_interrupted, in_error_stop, state_forbids (it still brakes for him), why it cannot go on.
+    ErrorId release_hold() noexcept;
+    /// Whoever commanded it is gone: comes to rest, forgets what was interrupted or waits, gives up the lock of a stop.
     void let_go() noexcept;
     /// For a member that it leads: halts on the path, and shuts that axis down when it stands (Axis::shut_down).
     void shut_down(AxisRef axis) noexcept;
@@ -77,6 +84,7 @@ public:
 
 private:
     [[nodiscard]] bool waits(const GroupCommand& command) const noexcept;
+    [[nodiscard]] bool waits_for_person(const GroupCommand& command) const noexcept;
     /// What it takes with it if it is accepted now.
     [[nodiscard]] CommandPlace place_of(const GroupCommand& command) const noexcept;
     Submitted take_setting(const GroupCommand& command, Owner owner) noexcept;
@@ -95,6 +103,7 @@ private:
     Submitted take_motion(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_stop(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_interrupt(const GroupCommand& command) noexcept;
+    CommandId interrupt(const PathDynamics& dynamics) noexcept;
     Submitted take_resume(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_home(const GroupCommand& command, Owner owner) noexcept;
     CommandId take_disable() noexcept;
@@ -170,8 +179,9 @@ private:
     std::uint16_t going_off_ = 0;  // places that are shut down when it stands
     struct {
         double override_factor = 1;
-        bool setup = false;  // the machine's mode
-        bool holds = false;  // GroupView::held
+        bool setup = false;               // the machine's mode
+        bool holds = false;               // GroupView::held
+        bool program_interrupts = false;  // GroupView::program_interrupts: what is left when the hand lets go
     } hand_;
     CommandId lock_ = 0, interrupting_ = 0, disabling_ = 0;
     CommandId sent_ = 0;  // the last one that the planner has

@@ -36,6 +36,8 @@ ErrorId AxisGroups::set(GroupRef group, const GroupSetting& setting, Owner owner
     if (!found) return ErrorId::invalid_group;
     if (const auto* added = std::get_if<AddMember>(&setting))
         if (const auto other = group_of(added->axis); other.valid() && other != group) return ErrorId::invalid_member;
+    if (const auto* follow = std::get_if<FollowPath>(&setting))
+        if (const auto* of = view(group_of(follow->slave)); of != nullptr && of->held) return ErrorId::held_by_person;
     return found->set(setting, owner);
 }
 

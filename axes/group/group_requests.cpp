@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "axes/group/axis_group.hpp"
 #include "axes/group/group_software_limits.hpp"
@@ -47,10 +48,19 @@ ErrorId refuse_transition(const GroupCommand& command) noexcept {
     return command.transition == mcTMNone || usable ? ErrorId::none : ErrorId::invalid_parameter;
 }
 
+/// Who jogs by hand is the person himself.
+bool by_hand(const GroupCommand& command) noexcept { return command.kind == GroupCommandKind::jog && command.jog.hand == JogHand::person; }
+
 }  // namespace
 
 bool AxisGroup::waits(const GroupCommand& command) const noexcept {
-    return command.buffer_mode != mcAborting && (queue_.has_active() || queue_.waiting() > 0 || interrupted_);
+    return command.buffer_mode != mcAborting && (queue_.has_active() || queue_.waiting() > 0 || interrupted_ || interrupting_ != 0);
+}
+
+/// Nobody but the person who holds it lets it go: what a program would begin at once begins then (G-069).
+bool AxisGroup::waits_for_person(const GroupCommand& command) const noexcept {
+    const bool rests = interrupted_ || interrupting_ != 0;
+    return hand_.holds && rests && command.buffer_mode == mcAborting && has_place_in_queue(command.kind) && !by_hand(command);
 }
 
 /// G-011, G-064: what the state has an answer to.
@@ -64,9 +74,16 @@ ErrorId AxisGroup::refuse_state(const GroupCommand& command) const noexcept {
     if (kind == GroupCommandKind::stop) return lock_ == 0 ? ErrorId::none : ErrorId::state_forbids;
     if (state_ == GroupStopping) return ErrorId::state_forbids;
     if (state_ == GroupHoming) return ErrorId::state_forbids;
-    if (kind == GroupCommandKind::home) return state_ == GroupStandby ? ErrorId::none : ErrorId::state_forbids;
+    if (kind == GroupCommandKind::home)
+        return state_ != GroupStandby ? ErrorId::state_forbids : hand_.holds ? ErrorId::held_by_person : ErrorId::none;
+    if (waits_for_person(command)) {
+        const bool can_wait = kind != GroupCommandKind::jog && kind != GroupCommandKind::driven_path;
+        return can_wait ? ErrorId::none : ErrorId::held_by_person;
+    }
     if ((jogs() || is_driven()) && has_place_in_queue(kind) && waits(command)) return ErrorId::state_forbids;  // G-090
-    if (kind == GroupCommandKind::interrupt) return interrupting_ == 0 && !interrupted_ ? ErrorId::none : ErrorId::state_forbids;
+    // For a program that asks while a person holds it, it is the first one.
+    const bool interrupts = hand_.holds ? hand_.program_interrupts : interrupted_ || interrupting_ != 0;
+    if (kind == GroupCommandKind::interrupt) return interrupts ? ErrorId::state_forbids : ErrorId::none;
     if (kind == GroupCommandKind::resume)
         return !interrupted_ ? ErrorId::nothing_interrupted : hand_.holds ? ErrorId::held_by_person : ErrorId::none;
     return interrupting_ != 0 && !waits(command) ? ErrorId::state_forbids : ErrorId::none;
@@ -174,6 +191,23 @@ Submitted AxisGroup::take_motion(const GroupCommand& command, Owner owner) noexc
         queue_.push({id, owner, command, place});
         return {id, ErrorId::none};
     }
+    if (waits_for_person(command)) {
+        const bool stands = interrupted_;
+        const auto brakes_for = std::exchange(interrupting_, CommandId{0});  // goes on doing so
+        abort_all();
+        interrupted_ = stands;
+        interrupting_ = brakes_for;
+        const auto id = queue_.next_id();
+        if (command.kind != GroupCommandKind::halt) {
+            queue_.push({id, owner, command, place});
+        } else if (stands) {
+            queue_.record(id, Outcome::done);
+        } else {  // done where it rests
+            interrupting_ = id;
+            run_.stop(command.dynamics, factors());
+        }
+        return {id, ErrorId::none};
+    }
     const bool stands = !members_.led();
     if (stands && command.kind == GroupCommandKind::halt) {
         abort_all();
@@ -213,14 +247,23 @@ CommandId AxisGroup::take_stop(const GroupCommand& command, Owner owner) noexcep
 }
 
 CommandId AxisGroup::take_interrupt(const GroupCommand& command) noexcept {
+    hand_.program_interrupts = true;
+    if (!interrupted_) return interrupt(command.dynamics);
     const auto id = queue_.next_id();
-    if (jogs()) {  // nobody goes on with a jog but by pressing again
+    queue_.record(id, Outcome::done);  // a person has brought it to rest
+    return id;
+}
+
+CommandId AxisGroup::interrupt(const PathDynamics& dynamics) noexcept {
+    const auto id = queue_.next_id();
+    if (interrupting_ != 0) queue_.record(interrupting_, Outcome::aborted);  // for another one that brakes on
+    if (jogs()) {                                                            // nobody goes on with a jog but by pressing again
         queue_.finish_active(Outcome::aborted);
         begun_ = false;
     }
     if (members_.led()) {
         interrupting_ = id;
-        run_.stop(command.dynamics, Override{});
+        run_.stop(dynamics, Override{});
     } else {
         interrupted_ = true;
         queue_.record(id, Outcome::done);
@@ -250,7 +293,7 @@ Submitted AxisGroup::take_resume(const GroupCommand& command, Owner owner) noexc
         }
         fire(GroupEvent::motion);
     }
-    interrupted_ = false;
+    interrupted_ = hand_.program_interrupts = false;
     const auto id = queue_.next_id();
     queue_.record(id, Outcome::done);
     return {id, ErrorId::none};
@@ -269,6 +312,7 @@ CommandId AxisGroup::take_home(const GroupCommand& command, Owner owner) noexcep
 }
 
 CommandId AxisGroup::take_disable() noexcept {
+    hand_.holds = false;
     abort_all();
     lock_ = 0;
     const auto id = queue_.next_id();
@@ -284,19 +328,50 @@ CommandId AxisGroup::take_disable() noexcept {
     return id;
 }
 
-void AxisGroup::hold(bool holds) noexcept {
-    hand_.holds = holds;
+ErrorId AxisGroup::hold() noexcept {
+    const bool interrupts = !hand_.holds && hand_.program_interrupts;  // it stands for its program, or brakes for it
+    if (!interrupts) {
+        if (hand_.holds && (interrupted_ || interrupting_ != 0)) return ErrorId::state_forbids;
+        if (const auto error = refuse_state({.kind = GroupCommandKind::interrupt}); error != ErrorId::none) return error;
+        (void)interrupt({});
+    } else if (interrupting_ != 0) {
+        run_.stop({}, Override{});  // a program may come to rest as softly as it likes; who interrupts the machine does not wait for that
+    }
+    hand_.holds = true;
     publish();
+    return ErrorId::none;
+}
+
+ErrorId AxisGroup::release_hold() noexcept {
+    if (!hand_.holds) return ErrorId::nothing_interrupted;
+    if (state_ == GroupState::GroupErrorStop) return ErrorId::in_error_stop;
+    if (!hand_.program_interrupts) {
+        if (interrupting_ != 0) return ErrorId::state_forbids;  // nobody would go on with it where it comes to rest
+        const auto next = queue_.has_active() ? queue_.active() : queue_.waiting() > 0 ? queue_.waiting_at(0) : AcceptedGroupCommand{};
+        if (interrupted_)
+            if (const auto error = take_resume(next.command, next.owner).error; error != ErrorId::none) return error;
+    }
+    hand_.holds = false;
+    publish();
+    return ErrorId::none;
 }
 
 void AxisGroup::halt() noexcept {
+    hand_.holds = false;
+    ++view_.stops_by_hand;
+    come_to_rest();
+    publish();
+}
+
+void AxisGroup::come_to_rest() noexcept {
     if (interrupted_ && !members_.led() && state_ == GroupState::GroupStandby) {  // whoever stops it does not want it to go on
         abort_all();
+        interrupted_ = hand_.holds;
         return publish();
     }
     if (!members_.led() || (state_ != GroupState::GroupMoving && state_ != GroupState::GroupStopping)) return;
     const auto owner = queue_.active().owner;
-    if (interrupting_ != 0) abort_all();  // it brakes already, and nobody goes on
+    if (interrupting_ != 0 || interrupted_) abort_all();  // it brakes already, or stands on a frame, and nobody goes on
     const bool stops =
         state_ == GroupState::GroupStopping || disabling_ != 0 || going_off_ != 0 || queue_.active().command.kind == GroupCommandKind::halt;
     // A program may stop as softly as it likes; who stops the machine does not wait for that.
@@ -312,13 +387,14 @@ void AxisGroup::let_go() noexcept {
     if (members_.led()) {
         // What stops it already goes on doing so; what waits behind that, or for a continue, is nobody's any more.
         if (interrupting_ != 0) abort_all();
-        halt();
+        come_to_rest();
         queue_.finish_waiting(Outcome::aborted);
         tracking_.release();
     } else {
         abort_all();
         if (state_ == GroupState::GroupStopping) fire(GroupEvent::stopped);
         if (state_ == GroupState::GroupHoming) fire(GroupEvent::done);
+        interrupted_ = hand_.holds && state_ == GroupState::GroupStandby;
     }
     publish();
 }
@@ -397,6 +473,7 @@ ErrorId AxisGroup::change_members(const GroupSetting& setting) noexcept {
     if (const auto* removed = std::get_if<RemoveMember>(&setting))
         return state_ == GroupState::GroupDisabled ? members_.remove(removed->ident) : ErrorId::state_forbids;
     if (members_.led() || state_ == GroupState::GroupStopping || state_ == GroupState::GroupHoming) return ErrorId::state_forbids;
+    if (hand_.holds) return ErrorId::held_by_person;
     abort_all();
     run_.clear();
     members_.remove_all();

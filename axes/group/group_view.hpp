@@ -46,13 +46,15 @@ struct GroupView {
     bool resetting = false;
     ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
     bool interrupted = false;             ///< stands, and MC_GroupContinue goes on
-    bool held = false;                    ///< a person has interrupted it, or keeps it so: no MC_GroupContinue goes on
+    bool held = false;                    ///< a person has interrupted it, or keeps it so: no program goes on, nor begins anything
     bool kinematics = false;              ///< it has an arm, and all of its joints are members: frames other than ACS can be read
 
     std::uint8_t member_count = 0;
     std::array<AxisRef, most_members> members{};  ///< by place; invalid: none
     bool powered = false;                         ///< all members; FALSE without members
     bool in_position = false;                     ///< all members
+    bool program_interrupts = false;  ///< its program has interrupted it, whoever holds it beside that: only that program goes on
+    std::uint8_t stops_by_hand = 0;   ///< a person's stops, counted round and round
 
     // by place; those without a member are 0
     JointVector commanded{};  ///< where the active command, else the last one, leads

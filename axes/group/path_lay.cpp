@@ -15,7 +15,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Of a member's acceleration and jerk: one half is for ramps along the path, the other for what its bends ask for.
 constexpr double share_of_ramps = 0.5;
 constexpr double seam_digits = 1e-9;
-constexpr int looks_on_section = 8, halvings = 40;
+constexpr int looks_on_section = 8;
 
 bool stands_for(const PathItem& item) noexcept {
     return item.kind == PathItem::Kind::dwell || item.kind == PathItem::Kind::ask || item.kind == PathItem::Kind::tell;
@@ -49,6 +49,7 @@ double fastest_in_bend(const WayPoint& w, const MotionLimits& ramp, const MoveSp
         const auto takes = [&](double v) {
             return third * v * v * v + 3 * second * v * std::min(ramp.deceleration, std::sqrt(2 * ramp.jerk * v));
         };
+        constexpr int halvings = 40;
         double low = 0, high = third > 1e-12 ? std::cbrt(most / third) : most / (3 * second * ramp.deceleration) + most;
         for (int k = 0; k < halvings && takes(high) > most; ++k) {
             const double v = (low + high) / 2;

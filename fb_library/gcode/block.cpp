@@ -65,7 +65,9 @@ private:
         if (c == ',') return fail(FaultKind::comma, at_);
         if (is_expression(c)) return fail(FaultKind::expression, at_);
         if (is_digit(c) || c == '.' || c == '+' || c == '-') return fail(FaultKind::no_letter, at_);
-        return fail(FaultKind::bad_character, at_);
+        // No character of UTF-8 has these bytes; UTF-16 begins with two of them and has zeros all along.
+        const bool plain = c != '\0' && c != '\xFE' && c != '\xFF';
+        return fail(plain ? FaultKind::bad_character : FaultKind::not_plain_text, at_);
     }
 
     FaultKind comment() noexcept {

@@ -20,6 +20,8 @@ constexpr std::array<FaultWords, fault_kinds - 1> table{{
     {K::percent_unopened, "gcode.percent_unopened", "a % closes the program, but none opened it",
      "Begin the file with a line %, or end the program with M30 alone."},
     {K::bad_character, "gcode.bad_character", "{word} is no character of a block", "Delete it, or put it into a comment: ( ) or ;."},
+    {K::not_plain_text, "gcode.not_plain_text", "{word} is in no plain text: this seems to be UTF-16, or no text at all",
+     "Save the program as plain text (ASCII, UTF-8)."},
     {K::nested_comment, "gcode.nested_comment", "a comment begins inside a comment: which ) would end it?", "Use other brackets inside."},
     {K::open_comment, "gcode.open_comment", "the comment has no ) in its line", "Close it; a comment ends in its line."},
     {K::active_comment, "gcode.active_comment", "{word} is a comment that other controls act upon, and this one does not",

@@ -20,6 +20,7 @@ enum class FaultKind : std::uint8_t {
     percent_inside,
     percent_unopened,
     bad_character,
+    not_plain_text,
     nested_comment,
     open_comment,
     active_comment,

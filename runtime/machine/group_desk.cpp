@@ -28,12 +28,7 @@ float part(double value, double limit) noexcept {
 }  // namespace
 
 GroupDesk::GroupDesk(MachineBody& body, HandMotion& hands)
-    : body_(body),
-      hands_(hands),
-      hand_(body),
-      seen_(body.axis_groups.size()),
-      programs_too_(body.axis_groups.size()),
-      accelerations_(body.axis_groups.size()) {}
+    : body_(body), hands_(hands), hand_(body), seen_(body.axis_groups.size()), accelerations_(body.axis_groups.size()) {}
 
 std::uint64_t GroupDesk::newest_stop(std::size_t group) const noexcept {
     std::uint64_t newest = 0;
@@ -74,26 +69,22 @@ Verdict GroupDesk::halt(std::size_t group) noexcept {
     return first;
 }
 
-// As a stop: carried out in the name of whoever moves it.
 Verdict GroupDesk::interrupt(std::size_t group) noexcept {
     auto& of = body_.axis_groups[group];
-    const bool by_program = !of.view().held && (of.view().interrupted || of.view().interrupting != 0);
-    const auto verdict = by_program ? Verdict{} : submit(group, GroupCommandKind::interrupt, owner_of(group));
-    if (verdict.answer != Answer::accepted) return verdict;
-    of.hold(true);
-    programs_too_[group] = by_program ? 1 : 0;
-    return verdict;
+    if (const auto error = of.hold(); error != ErrorId::none) return verdict_of(error);
+    if (of.leads()) return {};
+    // What its program moves alone has no interruption to be kept in.
+    for (const auto member : of.view().members)
+        if (member.valid() && body_.axes[member.index].view().state != axes::AxisState::Standstill) (void)hands_.stop_alone(member.index);
+    return {};
 }
 
 // What a program has interrupted, it has for its own reasons: nobody at a panel knows whether they are over.
 Verdict GroupDesk::go_on(std::size_t group) noexcept {
     if (body_.emergency) return {Answer::not_possible_now, ErrorId::interlocked};
     auto& of = body_.axis_groups[group];
-    if (!of.view().held) return verdict_of(ErrorId::nothing_interrupted);
-    of.hold(false);
-    if (programs_too_[group] != 0) return {};
-    const auto verdict = submit(group, GroupCommandKind::resume, owner_of(group));
-    if (verdict.answer != Answer::accepted) of.hold(true);
+    auto verdict = verdict_of(of.release_hold());
+    verdict.waits_for_program = verdict.answer == Answer::accepted && of.view().program_interrupts;
     return verdict;
 }
 

@@ -46,7 +46,6 @@ private:
     HandMotion& hands_;
     GroupHand hand_;
     std::vector<SeenGroup> seen_;
-    std::vector<std::uint8_t> programs_too_;        // a person holds what its program has interrupted
     std::vector<axes::JointVector> accelerations_;  // of the cycle before
 };
 

@@ -77,7 +77,7 @@ Duration GroupHand::lease_of(std::size_t group) const noexcept {
 Verdict GroupHand::jog(const OperatorCommand& command, std::size_t group) noexcept {
     if (!(command.value >= 0 && command.value <= 1) || !(command.value2 >= 0) || !std::isfinite(command.value2)) return {Answer::bad_value};
     if (command.value == 0) {
-        if (jogs(group)) body_.axis_groups[group].halt();
+        if (jogs(group)) body_.axis_groups[group].come_to_rest();
         held_[group].id = 0;
         return {};
     }
@@ -167,7 +167,7 @@ void GroupHand::set_mode(axes::OperatingMode mode) noexcept {
     mode_ = mode;
     for (std::size_t i = 0; i < body_.axis_groups.size(); ++i) {
         auto& group = body_.axis_groups[i];
-        if (by_hand) group.halt();
+        if (by_hand) group.come_to_rest();
         group.set_mode(mode);
         held_[i].id = 0;
     }

@@ -24,7 +24,6 @@ void HandMotion::note_stop(std::size_t axis, std::uint64_t number) noexcept {
 // Stopping is everybody's right: it is carried out in the owner's name.
 Verdict HandMotion::stop(std::size_t axis) noexcept {
     const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
-    const auto owner = body_.axes[axis].view().owner;
     axes_[axis].jog = 0;
     if (auto* group = body_.axis_groups.leader_of(ref)) {  // on the path: a member that stops alone would leave it
         group->halt();
@@ -32,6 +31,21 @@ Verdict HandMotion::stop(std::size_t axis) noexcept {
     }
     // It stands, interrupted: its program would go on behind this stop.
     if (const auto group = body_.axis_groups.group_of(ref); group.valid()) body_.axis_groups[group.index].halt();
+    return stop_alone(axis);
+}
+
+Verdict HandMotion::let_go(std::size_t axis) noexcept {
+    axes_[axis].jog = 0;
+    if (auto* group = body_.axis_groups.leader_of({static_cast<std::uint16_t>(axis)})) {
+        group->come_to_rest();
+        return {};
+    }
+    return stop_alone(axis);
+}
+
+Verdict HandMotion::stop_alone(std::size_t axis) noexcept {
+    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
+    const auto owner = body_.axes[axis].view().owner;
     switch (body_.axes[axis].view().state) {
         case AxisState::Disabled:
         case AxisState::Stopping:
@@ -56,7 +70,7 @@ Verdict HandMotion::jog(const OperatorCommand& command, std::size_t axis) noexce
     auto ended_by = axes::ErrorId::none;
     const auto status = body_.axes[axis].view().status(running, &ended_by);
     const bool jogging = status == axes::CommandStatus::active || status == axes::CommandStatus::in_target;
-    if (command.value == 0) return jogging ? stop(axis) : Verdict{};
+    if (command.value == 0) return jogging ? let_go(axis) : Verdict{};
     if (jogging) {
         const auto error = body_.requests.renew_jog(ref, running, command.value, command.owner);
         const bool lease_over = error == ErrorId::state_forbids;

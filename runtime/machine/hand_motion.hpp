@@ -17,6 +17,7 @@ struct Verdict {
     axes::JogEnd jog_end = axes::JogEnd::none;  ///< of a group's jog, and what it met
     axes::AxisRef limiting{};
     std::uint8_t room = axes::PathHindrance::none;
+    bool waits_for_program = false;  ///< a person's continue: the program has interrupted the group, too
 };
 [[nodiscard]] Verdict verdict_of(axes::ErrorId error) noexcept;
 
@@ -24,8 +25,12 @@ class HandMotion {
 public:
     explicit HandMotion(MachineBody& body) : body_(body), axes_(body.config.axes.size()) {}
 
-    /// Along the ramp, whoever owns the axis.
+    /// A person's stop, along the ramp, whoever owns the axis. Of a group's member it is the group's, and ends what a person holds of it.
     Verdict stop(std::size_t axis) noexcept;
+    /// The same where nobody asks for a stop: a key is let go, a measurement is over. What a person holds of a group he holds on.
+    Verdict let_go(std::size_t axis) noexcept;
+    /// The same, of what no group leads; a group whose member it is stays interrupted.
+    Verdict stop_alone(std::size_t axis) noexcept;
     /// As OperatorAction::jog.
     Verdict jog(const OperatorCommand& command, std::size_t axis) noexcept;
     /// The mode changes: a jog that was is forgotten.

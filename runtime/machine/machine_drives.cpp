@@ -96,7 +96,7 @@ void MachineDrives::build_axes() {
     std::vector<std::unique_ptr<axes::PathMaker>> paths;
     for (const auto& path : config.paths) paths.push_back(std::make_unique<gcode::GcodePathMaker>(path.text, path.options));
     body_.axis_groups.build(config.axis_groups, body_.axes, config.cycle, std::move(paths));
-    body_.requests = WatchedRequests{body_.axes};
+    body_.requests = WatchedRequests{body_.axes, &body_.axis_groups};
 }
 
 void MachineDrives::hold_brake_outputs() noexcept {

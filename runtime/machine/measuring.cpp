@@ -81,7 +81,7 @@ void Measuring::end(MeasureEnd how, ErrorId error) noexcept {
     state_.running = false;
     state_.end = how;
     state_.error = error;
-    if (how != MeasureEnd::alarm && how != MeasureEnd::stopped) (void)hands_.stop(state_.axis);
+    if (how != MeasureEnd::alarm && how != MeasureEnd::stopped) (void)hands_.let_go(state_.axis);
 }
 
 void Measuring::step() noexcept {
@@ -93,7 +93,7 @@ void Measuring::step() noexcept {
     if (body_.now - renewed_ >= axis.config().patience.jog_lease) return end(MeasureEnd::lease);
     // Fed set-points take no override. Who turns it down wants it slower now, and a measurement that changes on the way is none.
     if (velocity_override(axis.view()) < override_) {
-        (void)hands_.stop(state_.axis);
+        (void)hands_.let_go(state_.axis);
         return end(MeasureEnd::stopped);
     }
     if (begins_) return;  // the axis takes the command over as it plans, and what it was fed before is lost

@@ -53,7 +53,8 @@ void OperatorDesk::take_levels(Instant at) noexcept {
             if (!moves) continue;
             // A program's axis was never jogged: that press was refused.
             const bool spared = what == StopLevel::release_jog && body_.axes[i].view().owner == axes::Owner::program;
-            if (!body_.config.axes[i].axis.disabled && !spared) (void)hands_.stop(i);
+            if (body_.config.axes[i].axis.disabled || spared) continue;
+            (void)(what == StopLevel::stop ? hands_.stop(i) : hands_.let_go(i));
         }
     });
 }
@@ -98,6 +99,7 @@ void OperatorDesk::answer(const OperatorCommand& command, Verdict verdict) noexc
     reply.jog_end = verdict.jog_end;
     reply.limiting = verdict.limiting;
     reply.room = verdict.room;
+    reply.waits_for_program = verdict.waits_for_program;
     if (command.axis < body_.axes.size()) {
         reply.owner = body_.axes[command.axis].view().owner;
         reply.holder = body_.axes[command.axis].view().holder;

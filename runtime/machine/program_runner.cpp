@@ -170,6 +170,7 @@ void ProgramRunner::stop(std::size_t program, ProgramState state) noexcept {
     host_.programs()[program].alarms = 0;
     programs_[program].handshake.store(Handshake::stop_asked, std::memory_order_release);
     const bool others = std::any_of(programs_.begin(), programs_.end(), [](const ProgramRecord& other) { return other.running(); });
+    let_go_of_groups(program);
     for (std::size_t i = 0; i < body_.axes.size(); ++i) {
         auto& claims = claims_[i];
         const bool powers = claims.power == program, moves = claims.motion == program;
@@ -177,7 +178,6 @@ void ProgramRunner::stop(std::size_t program, ProgramState state) noexcept {
         if (moves) claims.motion = no_program;
         auto& axis = body_.axes[i];
         if (axis.view().owner != axes::Owner::program) continue;
-        if (moves) let_go_of_group(i);
         if (powers || !others) body_.shut_down(i);  // its power wishes end with it: the axis ramps down, then its power goes off
         else if (moves) end_motion(i);
     }
@@ -193,14 +193,23 @@ void ProgramRunner::release_outputs_of(std::size_t program, bool others_run) noe
     if (!others_run) body_.io.make_safe();
 }
 
-void ProgramRunner::let_go_of_group(std::size_t axis) noexcept {
-    const auto group = body_.axis_groups.group_of(axes::AxisRef{static_cast<std::uint16_t>(axis)});
-    if (group.valid()) body_.axis_groups[group.index].let_go();
+// A group that another program commands goes on, and what a person holds he holds on.
+void ProgramRunner::let_go_of_groups(std::size_t program) noexcept {
+    for (std::size_t i = 0; i < body_.axis_groups.size(); ++i) {
+        if (groups_.commander(i) != program) continue;
+        groups_.forget_commander(i);
+        const auto& members = body_.axis_groups[i].view().members;
+        const bool its = std::any_of(members.begin(), members.end(), [this](axes::AxisRef axis) {
+            return axis.valid() && body_.axes[axis.index].view().owner == axes::Owner::program;
+        });
+        if (its) body_.axis_groups[i].let_go();
+    }
 }
 
-// The program that moved the axis is gone, the one that powers it is not.
+// The program that moved the axis is gone, the one that powers it is not. What a group leads comes to rest with that, or is another program's.
 void ProgramRunner::end_motion(std::size_t axis) noexcept {
-    (void)hands_.stop(axis);
+    if (body_.axis_groups.leader_of(axes::AxisRef{static_cast<std::uint16_t>(axis)}) != nullptr) return;
+    (void)hands_.let_go(axis);
     if (const auto lock = body_.axes[axis].view().lock; lock != 0)
         body_.requests.release_stop(axes::AxisRef{static_cast<std::uint16_t>(axis)}, lock, axes::Owner::program);
 }

@@ -124,7 +124,7 @@ private:
     void take_handshakes() noexcept;
     void failed(std::size_t program, const FaultText& why) noexcept;
     void end_motion(std::size_t axis) noexcept;
-    void let_go_of_group(std::size_t axis) noexcept;
+    void let_go_of_groups(std::size_t program) noexcept;
     void release_outputs_of(std::size_t program, bool others_run) noexcept;
     [[nodiscard]] bool slow_tasks_finished(std::size_t program) const noexcept;
     void call_hook(std::size_t program);

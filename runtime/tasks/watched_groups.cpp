@@ -1,6 +1,7 @@
 #include "runtime/tasks/watched_groups.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "runtime/tasks/program_record.hpp"
 
@@ -55,6 +56,7 @@ axes::Submitted WatchedGroups::submit(axes::GroupRef group, const axes::GroupCom
                                       std::uint16_t program) noexcept {
     if (group.index >= places_.size()) return groups_.submit(group, command, owner);
     const auto before = groups_[group.index].view().active;
+    const bool held = groups_[group.index].view().held;
     const auto answer = groups_.submit(group, command, owner);
     CommandGiver giver;
     giver.group_kind = command.kind;
@@ -66,12 +68,21 @@ axes::Submitted WatchedGroups::submit(axes::GroupRef group, const axes::GroupCom
         return answer;
     }
     auto& place = places_[group.index];
+    // A person was told that it comes to rest and stays there: he has to hear who moves it all the same.
+    if (held && !groups_[group.index].view().held) {
+        const CommandGiver person{axes::CommandKind::none, axes::Owner::operator_panel, no_program, nullptr, GroupCommandKind::interrupt};
+        auto event = event_of(group.index, person, ErrorId::none, 0);
+        event.what = CommandEvent::What::aborted;
+        event.by = giver;
+        axes_.note(event);
+    }
     if (before != 0 && before != answer.id && aborted(groups_[group.index].view(), before)) {
         const auto* loser = giver_of(place, before);
         const bool own_stop = loser != nullptr && loser->program == program && stops(command.kind);
         if (!own_stop) note_aborted(group.index, before, giver);
         if (place.active == before) place.active = 0;
     }
+    if (!axes::is_administrative(command.kind)) place.commander = program;
     place.given[place.next] = {answer.id, giver};
     place.next = static_cast<std::uint8_t>((place.next + 1) % place.given.size());
     return answer;
@@ -101,15 +112,16 @@ void WatchedGroups::end_of_cycle(bool everything_ends, const ProgramRecords& pro
             if (stopped) event.what = CommandEvent::What::aborted;
             axes_.note(event);
         }
-        if (place.active != 0 && place.active != view.active && aborted(view, place.active)) {
-            const auto* given = giver_of(place, place.active);
-            // A halt that no program gave is the machine's hand: a person's stop, or another mode.
+        const bool by_hand = std::exchange(place.stops, view.stops_by_hand) != view.stops_by_hand;
+        const auto ended = place.active != 0 ? place.active : by_hand ? place.waiting : 0;
+        if (ended != 0 && ended != view.active && aborted(view, ended)) {
+            const auto* given = giver_of(place, ended);
             CommandGiver by;
-            if (view.active_kind == GroupCommandKind::halt && giver_of(place, view.active) == nullptr)
-                by = {axes::CommandKind::none, axes::Owner::operator_panel, no_program, nullptr, GroupCommandKind::halt};
-            if (given != nullptr && !everything_ends && !has_ended(*given, programs)) note_aborted(i, place.active, by);
+            if (by_hand) by = {axes::CommandKind::none, axes::Owner::operator_panel, no_program, nullptr, GroupCommandKind::halt};
+            if (given != nullptr && !everything_ends && !has_ended(*given, programs)) note_aborted(i, ended, by);
         }
         place.active = view.active;
+        place.waiting = view.active == 0 && view.queued_count > 0 ? view.queued[0] : 0;
     }
 }
 

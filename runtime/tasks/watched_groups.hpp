@@ -18,6 +18,9 @@ public:
 
     [[nodiscard]] axes::AxisGroups& groups() noexcept { return groups_; }
     axes::Submitted submit(axes::GroupRef group, const axes::GroupCommand& command, axes::Owner owner, std::uint16_t program) noexcept;
+    /// Which program gave the last command that is no mere setting; no_program: none that runs.
+    [[nodiscard]] std::uint16_t commander(std::size_t group) const noexcept { return places_[group].commander; }
+    void forget_commander(std::size_t group) noexcept { places_[group].commander = no_program; }
     /// Once a cycle, behind the groups' plans. What ends with its program or with everything needs no word of its own.
     void end_of_cycle(bool everything_ends, const ProgramRecords& programs) noexcept;
 
@@ -29,8 +32,11 @@ private:
     struct Place {
         std::array<Given, 32> given{};  // a ring: more than a group holds at a time
         std::uint8_t next = 0;
-        std::uint8_t ledger = 0;     // up to where the view's is told
-        axes::CommandId active = 0;  // at the end of the cycle before, and not told yet
+        std::uint8_t ledger = 0;      // up to where the view's is told
+        axes::CommandId active = 0;   // at the end of the cycle before, and not told yet
+        axes::CommandId waiting = 0;  // likewise; where none was active the first of those that waited
+        std::uint8_t stops = 0;       // GroupView::stops_by_hand then
+        std::uint16_t commander = no_program;
     };
     [[nodiscard]] static const CommandGiver* giver_of(const Place& place, axes::CommandId id) noexcept;
     /// The active command `id` has been aborted by `by`: nobody, the group itself.

@@ -1,5 +1,6 @@
 #include "runtime/tasks/watched_requests.hpp"
 
+#include "axes/axis/command_kinds.hpp"
 #include "runtime/tasks/program_record.hpp"
 
 namespace taktwerk::runtime {
@@ -27,6 +28,17 @@ void WatchedRequests::rival(Place& place, std::uint16_t loser) noexcept {
     place.rivals = {program_, loser, now_ + rivals_shown};
 }
 
+bool WatchedRequests::disturbs_person(axes::AxisRef axis, const axes::AxisCommand& command) const noexcept {
+    using axes::kind_table::Slot;
+    if (program_ == no_program || groups_ == nullptr) return false;
+    const auto slot = axes::slot_of(command.kind);
+    const bool stops =
+        command.kind == CommandKind::halt || command.kind == CommandKind::stop || command.kind == CommandKind::halt_superimposed;
+    if (stops || (slot != Slot::queue && slot != Slot::superimposed)) return false;
+    const auto* group = groups_->view(groups_->group_of(axis));
+    return group != nullptr && group->held;
+}
+
 axes::Submitted WatchedRequests::submit(axes::AxisRef axis, const axes::AxisCommand& command, axes::Owner owner) noexcept {
     if (axis.index >= axes_.size()) return direct_.submit(axis, command, owner);
     auto& place = places_[axis.index];
@@ -34,7 +46,9 @@ axes::Submitted WatchedRequests::submit(axes::AxisRef axis, const axes::AxisComm
     const auto before = view.active;
     // Over as it was meant to end: an endless motion at its velocity is taken on by the next, a released key stops its jog.
     const bool reached = view.active_in_target || (view.active_kind == CommandKind::jog && command.kind == CommandKind::halt);
-    const CommandGiver asking{command.kind, owner, program_, command.instance};
+    // Who stops what a program moves does so in the program's name (HandMotion::stop), and is a person all the same.
+    const bool hand = program_ == no_program && owner == axes::Owner::program;
+    const CommandGiver asking{command.kind, hand ? axes::Owner::operator_panel : owner, program_, command.instance};
 
     CommandEvent event;
     event.axis = axis.index;
@@ -47,7 +61,7 @@ axes::Submitted WatchedRequests::submit(axes::AxisRef axis, const axes::AxisComm
     if (holder) event.by = *holder;
     else if (view.active != 0) event.by = {view.active_kind, view.owner, no_program, view.holder};
 
-    const auto answer = direct_.submit(axis, command, owner);
+    const auto answer = disturbs_person(axis, command) ? axes::Submitted{0, ErrorId::held_by_person} : direct_.submit(axis, command, owner);
     if (answer.error != ErrorId::none) {
         event.error = answer.error;
         if (answer.error == ErrorId::owned_by_other && event.by.owner == axes::Owner::none) event.by.owner = view.owner;
@@ -60,9 +74,11 @@ axes::Submitted WatchedRequests::submit(axes::AxisRef axis, const axes::AxisComm
     if (before != 0 && before != answer.id && cut_short(view, before)) {
         const auto loser = event.by;
         rival(place, loser.program);
-        const bool own_stop = loser.program == program_ && (command.kind == CommandKind::halt || command.kind == CommandKind::stop);
+        const bool stops = command.kind == CommandKind::halt || command.kind == CommandKind::stop;
+        const bool own_stop = stops && loser.program == program_;
+        const bool persons_stop = loser.program == no_program && loser.kind == CommandKind::halt && stops;  // it comes to rest all the same
         const bool another_program = loser.program != program_ && loser.program != no_program && program_ != no_program;
-        if (another_program || !(reached || own_stop)) {
+        if (hand || another_program || !(reached || own_stop || persons_stop)) {
             event.what = What::aborted;
             event.given = loser;
             event.by = asking;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "axes/axis/direct_requests.hpp"
+#include "axes/group/axis_groups.hpp"
 #include "runtime/command_events.hpp"
 
 namespace taktwerk::runtime {
@@ -22,7 +23,9 @@ public:
     static constexpr Duration rivals_shown = std::chrono::seconds{5};
 
     WatchedRequests() = default;
-    explicit WatchedRequests(std::span<axes::Axis> axes) : axes_(axes), direct_(axes), places_(axes.size()) {}
+    /// `groups`: a member of one that a person holds begins no motion of a program (held_by_person).
+    explicit WatchedRequests(std::span<axes::Axis> axes, const axes::AxisGroups* groups = nullptr)
+        : axes_(axes), groups_(groups), direct_(axes), places_(axes.size()) {}
 
     /// Before the requests of each party: whose they are (no_program: a person).
     void speak_for(std::uint16_t program, Instant now) noexcept {
@@ -76,8 +79,11 @@ private:
     /// An active command is over although its end was not reached.
     [[nodiscard]] static bool cut_short(const axes::AxisView& view, axes::CommandId id) noexcept;
     void rival(Place& place, std::uint16_t loser) noexcept;
+    /// It would move what a person holds.
+    [[nodiscard]] bool disturbs_person(axes::AxisRef axis, const axes::AxisCommand& command) const noexcept;
 
     std::span<axes::Axis> axes_;
+    const axes::AxisGroups* groups_ = nullptr;
     axes::DirectRequests direct_;
     std::vector<Place> places_;
     CommandEvents events_;

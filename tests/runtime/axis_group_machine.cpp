@@ -225,6 +225,136 @@ TEST(AxisGroupMachine, APersonsStopOfOneAxisHaltsTheGroup) {
     EXPECT_EQ(event.by.group_kind, axes::GroupCommandKind::halt);
 }
 
+// So near the end of the way that it is over where it rests, and its program begins the next: that waits for the person.
+TEST(AxisGroupMachine, WhatAPersonHasInterruptedNoNewCommandMoves) {
+    TestMachine m(with_group(2));
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity < -100; }, 20s)) << "on the way back, which nothing follows";
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > -20; }, 20s)) << "it slows down for its end";
+    EXPECT_EQ(m.command(OperatorAction::group_interrupt, 0).answer, Answer::accepted);
+    EXPECT_FALSE(m.until([&] { return m.axis(1).set_velocity > 1; }, 3s));
+    EXPECT_EQ(m.state().event_count, 0u);
+    EXPECT_EQ(m.command(OperatorAction::group_continue, 0).answer, Answer::accepted);
+    EXPECT_TRUE(m.until([&] { return m.axis(1).set_velocity > 20; }, 3s)) << "the program's next command";
+}
+
+// Who lets it go while it still brakes: nobody would go on with it where it stands. It stays his, and he is told to wait.
+TEST(AxisGroupMachine, WhoContinuesWhileItBrakesHoldsItOn) {
+    TestMachine m(with_group(2));
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 20s));
+    EXPECT_EQ(m.command(OperatorAction::group_interrupt, 0).answer, Answer::accepted);
+    const auto early = m.command(OperatorAction::group_continue, 0);
+    EXPECT_EQ(early.answer, Answer::refused_by_axis);
+    EXPECT_EQ(early.error, axes::ErrorId::state_forbids);
+    ASSERT_TRUE(m.until([&] { return m.state().groups[0].interrupted; }, 3s));
+    EXPECT_TRUE(m.state().groups[0].held);
+    EXPECT_EQ(m.command(OperatorAction::group_continue, 0).answer, Answer::accepted);
+    EXPECT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 3s));
+    m.expect_no_jump();
+}
+
+/// One motion behind the other, each when the one before is Done; and, told so, one of the first member alone.
+class OneByOne : public Draws {
+public:
+    fb::MC_MoveRelative alone;
+    AxisRef x_axis;
+    bool alone_too = false;
+    std::int64_t alone_error = 0;
+    void declare(Declaration& d) override {
+        group = d.axis_group("table");
+        x_axis = d.axis("x");
+        d.monitor("done", done);
+        d.monitor("failed", failed);
+        d.monitor("alone_error", alone_error);
+        d.operator_switch("alone", alone_too);
+        d.operator_switch("goes", goes);
+        d.task<&OneByOne::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        for (auto* any : {&power.AxesGroup, &enable.AxesGroup, &first.AxesGroup, &status.AxesGroup}) *any = group;
+        power.Enable = status.Enable = true;
+        power(ctx);
+        enable.Execute = power.Status;
+        enable(ctx);
+        status(ctx);
+        alone.Axis = x_axis;
+        alone.Distance = 1000;
+        alone.Velocity = 50;
+        alone.Execute = alone_too;
+        alone(ctx);
+        alone_error = static_cast<std::int64_t>(alone.ErrorID);
+        first.Velocity = 200;
+        if (status.GroupStandby && power.Status && goes) go();
+        first(ctx);
+        if (!first.Done && !first.Error) return;
+        done += first.Done ? 1 : 0;
+        failed += first.Error ? 1 : 0;
+        first.Execute = false;
+        first(ctx);
+        if (goes) go();
+        first(ctx);  // in the scan in which it is told
+    }
+    void go() {
+        if (!first.Execute) first.Position.A.Axes = {done % 2 == 0 ? 60.0 : 0.0, done % 2 == 0 ? 80.0 : 0.0};
+        first.Execute = true;
+    }
+};
+
+void switch_to(TestMachine& m, std::string_view name, bool on) {
+    const auto& names = m.machine->layout().variables;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i].name == name) (void)m.command(OperatorAction::set_value, static_cast<std::uint16_t>(i), false, on ? 1 : 0);
+}
+
+// At whichever cycle of its last ramp it is interrupted: what its program commands when the motion is Done, still while it brakes, is no error; it waits.
+TEST(AxisGroupMachine, WhatFollowsWhereItBrakesForAPersonWaitsForHim) {
+    for (const auto slow : {30.0, 20.0, 12.0, 6.0, 2.0}) {
+        TestMachine m(with_group(2, entry_of<OneByOne>));
+        ASSERT_TRUE(m.up());
+        ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity > 100; }, 20s));
+        ASSERT_TRUE(m.until([&] { return m.axis(1).set_velocity < slow; }, 20s));
+        EXPECT_EQ(m.command(OperatorAction::group_interrupt, 0).answer, Answer::accepted);
+        m.run(500ms);
+        EXPECT_TRUE(m.state().groups[0].held) << slow;
+        const double place = m.axis(1).set_position;
+        m.run(300ms);
+        EXPECT_EQ(m.axis(1).set_position, place) << slow;
+        EXPECT_EQ(m.command(OperatorAction::group_continue, 0).answer, Answer::accepted);
+        m.run(1500ms);
+        EXPECT_GE(variable(m, "done"), 2) << slow;
+        EXPECT_EQ(variable(m, "failed"), 0) << slow;
+    }
+}
+
+// Nor does its program move one of its axes alone; what it moved so when a person interrupted the group comes to rest as by his stop.
+TEST(AxisGroupMachine, AMemberOfWhatAPersonHoldsIsNotMovedAlone) {
+    TestMachine m(with_group(2, entry_of<OneByOne>));
+    ASSERT_TRUE(m.up());
+    switch_to(m, "goes", false);
+    ASSERT_TRUE(m.until(
+        [&] { return m.state().groups[0].state == axes::GroupState::GroupStandby && m.axis(0).state == AxisState::Standstill; }, 20s));
+    switch_to(m, "alone", true);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity > 40; }, 3s));
+    EXPECT_EQ(m.command(OperatorAction::group_interrupt, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).state == AxisState::Standstill; }, 3s)) << "it was told that it comes to rest";
+    EXPECT_TRUE(m.state().groups[0].held);
+
+    const double place = m.axis(0).set_position;
+    switch_to(m, "alone", false);
+    m.run(20ms);
+    switch_to(m, "alone", true);
+    m.run(500ms);
+    EXPECT_EQ(m.axis(0).set_position, place);
+    EXPECT_EQ(variable(m, "alone_error"), static_cast<double>(axes::ErrorId::held_by_person));
+    EXPECT_EQ(m.command(OperatorAction::group_continue, 0).answer, Answer::accepted);
+    switch_to(m, "alone", false);
+    m.run(20ms);
+    switch_to(m, "alone", true);
+    EXPECT_TRUE(m.until([&] { return m.axis(0).set_velocity > 40; }, 3s));
+    m.expect_no_jump();
+}
+
 /// Its second command takes the first over.
 class TakesOver : public Draws {
 public:

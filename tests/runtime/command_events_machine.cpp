@@ -177,6 +177,29 @@ TEST_F(CommandEventsOf, AMoveThatTheOperatorStopsIsHis) {
     EXPECT_EQ(block(list[0].given), "p.lift");
     EXPECT_EQ(list[0].by.kind, CommandKind::halt);
     EXPECT_EQ(list[0].by.program, no_program);
+    EXPECT_EQ(list[0].by.owner, axes::Owner::operator_panel) << "no program's";
+}
+
+// At its velocity an endless motion is where it was meant to be: a program that takes it on is no news, a person who ends it is.
+TEST_F(CommandEventsOf, AnEndlessMotionThatTheOperatorStopsIsHis) {
+    Mover::move_wanted = false;
+    Mover::endless = true;
+    start(with_program(1, &entry_of<Mover>));
+    ASSERT_TRUE(m().until([&] { return m().axis(0).active_in_target; }, 10s));
+    EXPECT_EQ(m().command(OperatorAction::stop, 0).answer, Answer::accepted);
+
+    auto list = events(m());
+    ASSERT_EQ(list.size(), 1u);
+    EXPECT_EQ(list[0].what, What::aborted);
+    EXPECT_EQ(list[0].given.kind, CommandKind::move_velocity);
+    EXPECT_EQ(list[0].given.program, 0);
+    EXPECT_EQ(list[0].by.kind, CommandKind::halt);
+    EXPECT_EQ(list[0].by.owner, axes::Owner::operator_panel);
+
+    Mover::hold_wanted = true;  // the program stops what is stopping already
+    m().run(5ms);
+    list = events(m());
+    EXPECT_EQ(list.size(), 1u);
 }
 
 TEST_F(CommandEventsOf, AnErrorOfTheAxisEndsItsCommandByName) {

@@ -261,24 +261,24 @@ TEST_F(RetainedValues, BothSlotsDamagedIsAnAlarmUntilReset) {
 
 /// As much as a machine may keep, and one more.
 template <std::size_t Extra>
-struct Greedy final : Program {
+struct KeepsTooMuch final : Program {
     std::array<bool, most_kept_values + Extra> values{};
     void declare(Declaration& d) override {
         d.retain("values", values);
-        d.task<&Greedy::scan>("main");
+        d.task<&KeepsTooMuch::scan>("main");
     }
     void scan(TaskContext&) { values.back() = true; }
 };
 
 TEST_F(RetainedValues, WhatCouldNotBeReadAgainIsRefusedAndTheMostThatIsTakenComesBack) {
     auto c = config();
-    c.programs[0].entry = &entry_of<Greedy<1>>;
+    c.programs[0].entry = &entry_of<KeepsTooMuch<1>>;
     World world{c, Instant{}};
     const auto refused = Machine::build(c, world.bus());
     ASSERT_EQ(refused.index(), 1u);
     EXPECT_EQ(std::get<1>(refused).front().code, "program.retain_size");
 
-    c.programs[0].entry = &entry_of<Greedy<0>>;
+    c.programs[0].entry = &entry_of<KeepsTooMuch<0>>;
     run(c, 100ms);
     end();
     EXPECT_EQ(kept().values.size(), most_kept_values);

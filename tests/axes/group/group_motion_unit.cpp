@@ -391,20 +391,80 @@ TEST(GroupMotion, WhatAPersonHoldsIsNotGoneOnWith) {
     rig.enable();
     const auto move = rig.give(line({60, 80}, 100));
     rig.run(300);
-    (void)rig.give(simply(GroupCommandKind::interrupt));
-    rig.groups[0].hold(true);
+    EXPECT_EQ(rig.groups[0].hold(), ErrorId::none);
     EXPECT_TRUE(rig.view().held) << "while it brakes, too";
     ASSERT_TRUE(rig.until([&] { return rig.view().interrupted; }, 1000));
     const auto place = rig.point();
     EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::held_by_person);
     rig.run(500);
     EXPECT_EQ(rig.point(), place);
-    rig.groups[0].hold(false);
-    EXPECT_EQ(rig.submit(simply(GroupCommandKind::resume)).error, ErrorId::none);
-    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000));
+    EXPECT_EQ(rig.groups[0].release_hold(), ErrorId::none);
     EXPECT_FALSE(rig.view().held);
-    rig.groups[0].hold(true);
-    EXPECT_FALSE(rig.view().held) << "nothing is interrupted";
+    ASSERT_TRUE(rig.until([&] { return rig.status(move.id) == CommandStatus::done; }, 3000));
+    EXPECT_EQ(rig.groups[0].release_hold(), ErrorId::nothing_interrupted);
+}
+
+// Nor does one begin anything: near the end of a way it is over where it is held, and its program has the next one ready. That waits for the person; so do those that take
+// each other over meanwhile. A stop and a halt do not let it go, and what cannot wait is refused.
+TEST(GroupMotion, WhatAPersonHoldsNothingNewMoves) {
+    GroupRig rig(2);
+    rig.enable();
+    const auto move = rig.give(line({60, 80}, 100));
+    rig.run(300);
+    EXPECT_EQ(rig.groups[0].hold(), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.view().interrupted; }, 1000));
+    const auto place = rig.point();
+    const auto next = rig.give(line({10, 10}, 100)), over = rig.give(line({20, 10}, 100));
+    EXPECT_EQ(rig.status(move.id), CommandStatus::aborted);
+    EXPECT_EQ(rig.status(next.id), CommandStatus::aborted);
+    rig.run(500);
+    EXPECT_EQ(rig.point(), place);
+    EXPECT_EQ(rig.status(over.id), CommandStatus::queued);
+    EXPECT_TRUE(rig.view().held);
+    EXPECT_EQ(rig.submit(simply(GroupCommandKind::home)).error, ErrorId::held_by_person);
+
+    const auto halt = rig.give(simply(GroupCommandKind::halt));
+    EXPECT_EQ(rig.status(halt.id), CommandStatus::done);
+    EXPECT_EQ(rig.status(over.id), CommandStatus::aborted);
+    const auto stop = rig.give(simply(GroupCommandKind::stop));
+    rig.run(10);
+    rig.groups[0].release_stop(stop.id);
+    ASSERT_TRUE(rig.until([&] { return rig.view().state == GroupStandby; }, 100));
+    EXPECT_TRUE(rig.view().held);
+    const auto last = rig.give(line({5, 5}, 100));
+    rig.run(500);
+    EXPECT_EQ(rig.point(), place);
+
+    EXPECT_EQ(rig.groups[0].release_hold(), ErrorId::none);
+    EXPECT_FALSE(rig.view().interrupted) << "it begins";
+    ASSERT_TRUE(rig.until([&] { return rig.status(last.id) == CommandStatus::done; }, 3000));
+    EXPECT_NEAR(rig.point()[0], 5, 1e-9);
+}
+
+// What its program had interrupted itself, and a person held, is the program's again; a new command of it has ended that, and begins when he lets go.
+TEST(GroupMotion, WhatWaitedForAPersonBeginsWhoeverHadInterrupted) {
+    for (const bool commands : {true, false}) {
+        GroupRig rig(2);
+        rig.enable();
+        (void)rig.give(line({60, 80}, 100));
+        rig.run(300);
+        (void)rig.give(simply(GroupCommandKind::interrupt));
+        ASSERT_TRUE(rig.until([&] { return rig.view().interrupted; }, 1000));
+        EXPECT_EQ(rig.groups[0].hold(), ErrorId::none);
+        const auto place = rig.point();
+        if (commands) (void)rig.give(line({10, 10}, 100));
+        else (void)rig.give(line({10, 10}, 100, mcBuffered));
+        rig.run(300);
+        EXPECT_EQ(rig.point(), place);
+        EXPECT_EQ(rig.groups[0].release_hold(), ErrorId::none);
+        EXPECT_EQ(rig.view().interrupted, !commands);
+        rig.run(3000);
+        if (commands) {
+            EXPECT_NEAR(rig.point()[0], 10, 1e-9);
+        } else {
+            EXPECT_EQ(rig.point(), place);
+        }
+    }
 }
 
 // Whoever stops a group ends what it was interrupted in, while it still brakes for that and when it stands: nothing goes on behind a stop.

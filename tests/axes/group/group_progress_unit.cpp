@@ -12,8 +12,8 @@ struct CornerCase {
 
 // G-027
 TEST(GroupProgress, NeverGoesBackThroughRoundedCorners) {
-    for (const auto& [mode, parameter] : {CornerCase{mcTMNone, 0}, CornerCase{mcTMCornerDistance, 3}, CornerCase{mcTMCornerDistance, 15},
-                                          CornerCase{mcTMMaxCornerDeviation, 1}, CornerCase{mcTMStartVelocity, 1}}) {
+    for (const auto& one : {CornerCase{mcTMNone, 0}, CornerCase{mcTMCornerDistance, 3}, CornerCase{mcTMCornerDistance, 15},
+                            CornerCase{mcTMMaxCornerDeviation, 1}, CornerCase{mcTMStartVelocity, 1}}) {
         GroupRig rig(3, cartesian_arm());
         rig.enable();
         std::vector<CommandId> ids;
@@ -21,8 +21,8 @@ TEST(GroupProgress, NeverGoesBackThroughRoundedCorners) {
             for (const JointVector& to : {JointVector{40, 0, 0}, {40, 30, 0}, {10, 30, 0}, {10, 30, 20}}) {
                 auto command = line(to, 60, mcBlendingHigh);
                 command.frame = mcMCS;
-                command.transition = mode;
-                command.transition_parameter = parameter;
+                command.transition = one.mode;
+                command.transition_parameter = one.parameter;
                 ids.push_back(rig.submit(command).id);
             }
         });
@@ -51,7 +51,7 @@ TEST(GroupProgress, NeverGoesBackThroughRoundedCorners) {
             }
             return rig.status(ids.back()) == CommandStatus::done;
         };
-        ASSERT_TRUE(rig.until(done, 20000)) << static_cast<int>(mode);
+        ASSERT_TRUE(rig.until(done, 20000)) << static_cast<int>(one.mode);
         // By half of each corner: what a curve of 15 u leaves out of 30 u is little.
         for (const auto id : ids) {
             EXPECT_GE(first[id], 0) << id;

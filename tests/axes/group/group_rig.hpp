@@ -119,7 +119,7 @@ struct GroupRig {
         const double t = to_seconds(cycle);
         const MotionState now_at{view.set_position, view.set_velocity, view.set_acceleration};
         auto& last = before[i];
-        const bool led = view.active_kind == CommandKind::group_motion;
+        const bool led = view.active_kind == CommandKind::group_motion && groups[0].view().has(i);  // by the first group
         if (led && last.led) {
             const auto& from = last.at;
             const double grain = 1e-9;

@@ -73,7 +73,9 @@ TEST(GcodeLines, NumbersCommentsAndEndsOfLines) {
 
 TEST(GcodeLines, WhatIsNoCharacterOfABlock) {
     EXPECT_EQ(wrong("G0 X1 @"), "1:7 gcode.bad_character");
-    EXPECT_EQ(wrong(std::string("G0 X1 \0", 7)), "1:7 gcode.bad_character");
+    EXPECT_EQ(wrong(std::string("G0 X1 \0", 7)), "1:7 gcode.not_plain_text");
+    EXPECT_EQ(wrong(std::string("\xFF\xFEG\0000\0", 6)), "1:1 gcode.not_plain_text") << "UTF-16, as some editors save";
+    EXPECT_EQ(wrong(std::string("\0G\0000", 4)), "1:1 gcode.not_plain_text") << "the other way round";
     EXPECT_EQ(wrong("G0 X1\rX2"), "1:6 gcode.bad_character") << "a CR alone ends no line";
     EXPECT_EQ(wrong("G0 X1 \xC2\xA0Y1"), "1:7 gcode.bad_character") << "a blank of another kind";
     EXPECT_EQ(wrong("(\xC3\xA4) G0 X1"), "") << "comments may have any bytes";
