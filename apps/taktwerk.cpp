@@ -1,6 +1,8 @@
 #include "apps/taktwerk.hpp"
 
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include "apps/terminal/exit_code.hpp"
@@ -26,7 +28,7 @@ std::optional<Error> misplaced(const CLI::App& app, int argc, char** argv) {
         const CLI::App* next = nullptr;
         for (const auto* sub : at->get_subcommands([](const CLI::App*) { return true; })) {
             names.push_back(sub->get_name());
-            if (sub->get_name() == word) next = sub;
+            if (sub->check_name(word)) next = sub;
         }
         if (names.empty()) return std::nullopt;  // the word is an argument
         if (next == nullptr) {
@@ -43,6 +45,14 @@ std::optional<Error> misplaced(const CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 int run(int argc, char** argv) {
+    // `taktwerk help jog` is `taktwerk jog --help`.
+    static char help[] = "--help";
+    std::vector<char*> words(argv, argv + argc);
+    if (argc > 1 && std::string_view(argv[1]) == "help") {
+        words.erase(words.begin() + 1);
+        words.push_back(help);
+        argv = words.data();
+    }
     CLI::App app{"Taktwerk: soft-PLC and motion runtime"};
     app.set_version_flag("--version", std::string("taktwerk ") + sdk_version);
     app.require_subcommand(1);

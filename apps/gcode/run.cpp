@@ -134,10 +134,19 @@ int tell(const RunWords& words, const DryRunOutcome& out, const axes::AxisGroupC
                  std::string(row->english.remedy)});
 }
 
+bool is_yaml(const std::string& path) {
+    const auto ending = std::filesystem::path(path).extension();
+    return ending == ".yaml" || ending == ".yml";
+}
+
 int run(const RunWords& words) {
     if (words.program.rotary)
         return fail({"usage.rotary", "--rotary", "on a machine a stored path moves X, Y and Z: the tool stays turned as it is",
                      "leave it out; `gcode check` and `gcode plot` take it"},
+                    exit_usage);
+    if (is_yaml(words.program.file) && !is_yaml(words.machine))
+        return fail({"usage.order", shown_name(words.program.file), "a machine file where the program belongs",
+                     fmt::format("the machine first: taktwerk gcode run {} {}", shown_name(words.program.file), shown_name(words.machine))},
                     exit_usage);
     auto how = interpreter_options(words.program);
     if (!how) return fail(how.error(), exit_usage);

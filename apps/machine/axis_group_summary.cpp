@@ -1,5 +1,6 @@
 #include "apps/machine/axis_group_summary.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -16,6 +17,7 @@
 #include "fb_library/gcode/interpreter.hpp"
 #include "fb_library/gcode/program_summary.hpp"
 #include "fb_library/gcode/text_source.hpp"
+#include "runtime/check/reach_remarks.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -57,6 +59,35 @@ std::string zero_pose_text(const axes::AxisGroupConfig& group) {
     const auto at = group.kinematics->forward({}, group.equipment.tool_pose());
     if (!at.miss.ok()) return fmt::format("    with its axes at 0 it has no pose: {}\n", axes::name(at.miss.fault));
     return fmt::format("    with its axes at 0 the tool's point stands at {}\n", pose_text(axes::numbers_of(at.pose), group.unit));
+}
+
+/// "axis lift has no ends": of straight ones without, which keep the reach from being known.
+std::string endless_text(const runtime::MachineConfig& config, const axes::AxisGroupConfig& group) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min(group.members.size(), group.kinematics->joint_count()); ++i)
+        for (const auto& binding : config.axes) {
+            const auto& limits = binding.axis.limits;
+            const bool ends = std::isfinite(limits.position_min) && std::isfinite(limits.position_max);
+            if (binding.axis.name == group.members[i] && !group.kinematics->rotary()[i] && !ends)
+                names += (names.empty() ? "" : ", ") + group.members[i];
+        }
+    if (names.empty()) return {};
+    return fmt::format("    where the point comes is not known: no software limits (`limits: {{ position: [...] }}`) at both ends of {}\n",
+                       names);
+}
+
+/// What a wrong length, unit or limit changes first.
+std::string reach_text(const runtime::MachineConfig& config, const axes::AxisGroupConfig& group) {
+    const auto reach = runtime::reach_of(config, group);
+    if (!reach) return endless_text(config, group);
+    if (reach->points.empty()) return {};
+    std::string out = fmt::format("    over its axes' travels the point comes to about {} {}", reach->text(), group.unit);
+    if (const auto none = reach->looked_at - reach->points.size(); none > reach->looked_at / 100) {
+        const double share = 100 * static_cast<double>(none) / static_cast<double>(reach->looked_at);
+        out += fmt::format("; {} % of the axes' places are beyond a joint's end, or have no pose",
+                           share > 99 ? "more than 99" : fmt::format("{:.0f}", share));
+    }
+    return out + "\n";
 }
 
 /// Tools by their numbers, which are what programs select; frames that the file sets.
@@ -133,6 +164,7 @@ std::string axis_groups_text(const runtime::MachineConfig& config) {
                                group.kinematics->joint_count(), commanded(*group.kinematics),
                                group.kinematics->closed_form() ? "" : "; its inverse is found step by step");
             out += zero_pose_text(group);
+            out += reach_text(config, group);
         } else {
             out += "    no kinematics: commanded in the axes (ACS) alone\n";
         }

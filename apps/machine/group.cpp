@@ -1,6 +1,7 @@
 #include "apps/machine/group.hpp"
 
 #include <memory>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -31,6 +32,8 @@ int send(const GroupOrder& order, const GroupWord& word) {
     return with_machine(order.remote, [&](hmi::Client& client) {
         const auto answer = client.request({{"cmd", word.command}, {"group", order.group}});
         if (!answer) return report(order.remote, answer.error());
+        const auto note = answer->value("note", std::string{});
+        if (!note.empty()) return report(order.remote, fmt::format("{}: {}", order.group, note));
         return report(order.remote, fmt::format("{}: {}", order.group, word.done));
     });
 }
@@ -59,6 +62,7 @@ void add_group(CLI::App& app, Action& action) {
     };
     for (const auto& word : words) {
         const auto [sub, order] = add(word.word, word.doc);
+        if (word.word == std::string_view("halt")) sub->alias("stop");  // what a hurried hand writes has to stop
         sub->callback([&action, order = order, &word] { action = [order, &word] { return send(*order, word); }; });
     }
     const auto [sub, order] = add("override", "the operator's factor on the velocity along the path; 0 halts");

@@ -54,6 +54,8 @@ Health health_of(const Json& hello, const Json& told) {
     }
     for (const auto& program : part(state, "programs", Json::array()))
         h.programs.emplace_back(program.value("name", std::string{}), program.value("state", std::string{}));
+    for (const auto& group : part(state, "groups", Json::array()))
+        if (group.value("held", false)) h.held.push_back(group.value("name", std::string{}));
     for (const auto& task : part(state, "tasks", Json::array()))
         h.tasks.push_back({task.value("name", std::string{}), task.value("releases", none), task.value("overruns", none),
                            task.value("run_ns", 0.0) / 1000, task.value("run_max_ns", 0.0) / 1000});
@@ -71,6 +73,8 @@ std::string health_text(const Health& h) {
     if (!h.mode.empty())
         text += fmt::format("  {}, {} mode; {} of {} axes powered, {} homed\n", h.phase, h.mode, h.powered, h.axes, h.homed);
     for (const auto& [name, state] : h.programs) text += fmt::format("  program {}: {}\n", name, state);
+    for (const auto& name : h.held)
+        text += fmt::format("  group {}: a person has interrupted it; `taktwerk group continue {}` lets it go on\n", name, name);
     for (const auto& task : h.tasks)
         text += fmt::format("  task {}: {} runs, {} overruns, {:.0f} us, at most {:.0f} us\n", task.name, task.runs, task.overruns,
                             task.run_us, task.run_max_us);
@@ -103,6 +107,7 @@ Json health_json(const Health& h) {
               {"uptime_s", h.uptime_s}};
     auto& programs = json["programs"] = Json::array();
     for (const auto& [name, state] : h.programs) programs.push_back({{"name", name}, {"state", state}});
+    json["held"] = h.held;
     auto& tasks = json["tasks"] = Json::array();
     for (const auto& task : h.tasks)
         tasks.push_back({{"name", task.name},

@@ -29,6 +29,7 @@ struct Health {
         double run_us = 0, run_max_us = 0;
     };
     std::vector<Task> tasks;
+    std::vector<std::string> held;    ///< groups that a person has interrupted: no program moves them
     std::vector<std::string> unwell;  ///< why it is not; empty: it is well
 
     [[nodiscard]] bool well() const noexcept { return unwell.empty(); }

@@ -72,6 +72,8 @@ private:
         if (limiter == "setup_velocity") return ", held at the set-up velocity of the tool";
         if (limiter == "override_factor") return ", held by the override";
         if (limiter == "command") return ", as commanded";
+        // At rest nothing limits a velocity; who waits for it has to see why it does not go.
+        if (number("override") * number("operators_override") == 0) return ", held by the override";
         return "";
     }
 

@@ -186,8 +186,10 @@ int mode(const Order& order, hmi::Client& client) {
 int set(const Order& order, hmi::Client& client) {
     const auto value = parameter_value(client, order.target, order.value);
     if (!value) return report(order.remote, value.error());
-    return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", *value}},
-                fmt::format("{} = {:g}", order.target, *value));
+    const auto done = fmt::format("{} = {:g}", order.target, *value);
+    if (is_switch(client, order.target))
+        return send(order, client, {{"cmd", "set_value"}, {"variable", order.target}, {"value", *value}}, done);
+    return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", *value}}, done);
 }
 /// What ends with its client: so this one stays.
 int hold(const Order& order, hmi::Client& client, const std::string& what, const std::string& done) {
@@ -336,8 +338,9 @@ void add_operate(CLI::App& app, Action& action) {
         .add_option("MODE", adder.order->mode, "manual, setup or automatic")
         ->required()
         ->check(CLI::IsMember({"manual", "setup", "automatic"}));
-    auto& set_sub = adder.add("set", "write a parameter of a program", set);
-    set_sub.add_option("PARAMETER", adder.order->target, "name, or PROGRAM.NAME")->required();
+    auto& set_sub = adder.add("set", "write a parameter or a switch of a program", set);
+    set_sub.add_option("NAME", adder.order->target, "of a parameter or of a variable that the program lets people write, or PROGRAM.NAME")
+        ->required();
     set_sub.add_option("VALUE", adder.order->value, "within its range, e.g. 50mm; a bare number is in its unit")->required();
     auto& output_sub = adder.add("output", "set an output point while this command lives; only while no program runs", output);
     add_duration(output_sub, "--for", adder.order->hold_s, "let go after this time; default: at Ctrl-C");

@@ -97,16 +97,33 @@ Result<double> position_on(hmi::Client& client, const std::string& axis, const s
     return config::value_in(text, *unit);
 }
 
+namespace {
+
+/// NAME, or PROGRAM.NAME.
+const nlohmann::ordered_json* named(const nlohmann::ordered_json& list, const std::string& name) {
+    for (const auto& one : list) {
+        const auto own = one.at("name").get<std::string>();
+        if (own == name || one.at("program").get<std::string>() + "." + own == name) return &one;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
 Result<double> parameter_value(hmi::Client& client, const std::string& parameter, const std::string& text) {
     if (text == "true" || text == "false") return text == "true" ? 1.0 : 0.0;
     const auto layout = layout_of(client);
     if (!layout) return layout.error();
-    for (const auto& one : layout->at("parameters")) {
-        const auto name = one.at("name").get<std::string>();
-        if (name == parameter || one.at("program").get<std::string>() + "." + name == parameter)
-            return config::value_in(text, one.at("unit").get<std::string>());
-    }
+    for (const char* list : {"parameters", "variables"})
+        if (const auto* one = named(layout->at(list), parameter)) return config::value_in(text, one->at("unit").get<std::string>());
     return config::value_in(text, "");
+}
+
+bool is_switch(hmi::Client& client, const std::string& name) {
+    const auto layout = layout_of(client);
+    if (!layout || named(layout->at("parameters"), name) != nullptr) return false;
+    const auto* variable = named(layout->at("variables"), name);
+    return variable != nullptr && variable->at("writable").get<bool>();
 }
 
 Result<nlohmann::ordered_json> state_of(hmi::Client& client) { return ask(client, "state"); }

@@ -40,7 +40,9 @@ int with_machine(const RemoteOptions& options, const std::function<int(hmi::Clie
 /// exist is left to the machine to refuse. Errors: those of the socket, unit.other, unit.not_a_number.
 [[nodiscard]] Result<double> velocity_on(hmi::Client& client, const std::string& axis, const std::string& text);
 [[nodiscard]] Result<double> position_on(hmi::Client& client, const std::string& axis, const std::string& text);
-/// A parameter's value, in the unit that its program declared.
+/// A value of a parameter or variable, in the unit that its program declared.
 [[nodiscard]] Result<double> parameter_value(hmi::Client& client, const std::string& parameter, const std::string& text);
+/// No parameter, but a variable that its program lets people write.
+[[nodiscard]] bool is_switch(hmi::Client& client, const std::string& name);
 
 }  // namespace taktwerk::apps

@@ -301,8 +301,8 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"轴组成员不空闲", "轴组中的某个轴正在单独运动，或有命令正在执行或等待", "先使其进入 Standstill（MC_Halt 或等待 Done），然后重新发出轴组命令"}},
     {ErrorId::member_left, "member_left",
      {"An axis was taken out of the group's motion", "Its power was taken away, another party took control of it, or it stopped for a reason of its own; the others have stopped on the path",
-      "See what happened to the axis, give it power and control back, then MC_GroupReset"},
-     {"某个轴脱离了轴组运动", "该轴被断开使能、被其他操作方接管或自行停止；其余的轴已在路径上停止", "查明该轴的原因，恢复其使能和控制权，然后执行 MC_GroupReset"}},
+      "See what happened to the axis, give it power and control back, then reset the group (MC_GroupReset, or `taktwerk group reset`)"},
+     {"某个轴脱离了轴组运动", "该轴被断开使能、被其他操作方接管或自行停止；其余的轴已在路径上停止", "查明该轴的原因，恢复其使能和控制权，然后复位轴组（MC_GroupReset 或 `taktwerk group reset`）"}},
     {ErrorId::no_kinematics, "no_kinematics",
      {"The axis group has no kinematics for this frame", "CoordSystem is not ACS, and nothing says where the tool is for given axes, or not for this number of axes",
       "Command it in ACS, or configure the group's kinematics"},
@@ -379,8 +379,8 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
       "Look which member lags and why (load, brake, tuning, limits); slow the path down or widen the window"},
      {"工具偏离路径过大", "各成员轴的跟随误差合起来使工具点与设定点的距离超过轴组 `following_error` 的允许值；轴组已在路径上停止", "检查哪个成员轴滞后及其原因（负载、制动器、整定、限制）；降低路径速度或放宽窗口"}},
     {ErrorId::held_by_person, "held_by_person",
-     {"A person has interrupted the group", "It was interrupted at a panel, and MC_GroupContinue of a program does not go on behind that", "Let a person go on (`taktwerk group continue`, or the page), then the commands go on; or give the motion command again"},
-     {"轴组被人员中断", "轴组是在操作面板上被中断的，程序的 MC_GroupContinue 不能使其继续", "由人员继续（`taktwerk group continue` 或页面），命令随即继续；或重新发出运动命令"}},
+     {"A person has interrupted the group", "It was interrupted at a panel: no program goes on behind that, homes it, jogs it, drives it along a path or moves one of its axes alone", "Let a person go on (`taktwerk group continue`, or the page), then the commands go on; a motion that is commanded meanwhile waits for that"},
+     {"轴组被人员中断", "轴组是在操作面板上被中断的：程序不能使其继续，也不能使其回零、点动、由轴驱动沿路径运动或单独移动其成员轴", "由人员继续（`taktwerk group continue` 或页面），命令随即继续；其间发出的运动命令等待继续"}},
 }};
 // clang-format on
 

@@ -466,10 +466,11 @@ void Gateway::step(Instant now) {
         if (answer->answer == Answer::accepted) {
             note(answer->client, client->second, entry->request, now);
             const auto axis = find_target(machine_.layout(), TargetKind::axis, entry->request.target);
-            std::string limit;
+            std::string remark;
+            if (answer->waits_for_program) remark = waits_for_program_note;
             if (answer->limited_to > 0 && axis && *axis < machine_.layout().axes.size())
-                limit = limit_note(*answer, machine_.layout().axes[*axis].unit);
-            settle(client->second, *entry, Answer::accepted, axes::ErrorId::none, {}, std::move(limit));
+                remark = limit_note(*answer, machine_.layout().axes[*axis].unit);
+            settle(client->second, *entry, Answer::accepted, axes::ErrorId::none, {}, std::move(remark));
             continue;
         }
         const auto* word = find_command(entry->request.kind);

@@ -14,6 +14,8 @@ namespace taktwerk::hmi {
 /// "axis x", "program cell", ...; empty when the command has no target.
 [[nodiscard]] std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, std::uint16_t axis, std::uint16_t index);
 
+/// Who has continued what its program has interrupted, too.
+inline constexpr std::string_view waits_for_program_note = "its program has interrupted it, too, and goes on with it by itself";
 /// "limited to 20 mm/s by setup mode": for an accepted answer whose `limited_to` is above 0.
 [[nodiscard]] std::string limit_note(const runtime::CommandAnswer& answer, std::string_view unit);
 

@@ -71,7 +71,10 @@ EventText aborted_of_group(const CommandEvent& event, const runtime::MachineLayo
     } else if (!out.by.empty()) {
         const bool by_person = event.by.program == runtime::no_program && event.by.owner != axes::Owner::program;
         out.what = fmt::format("{} was aborted by {}", out.who, out.by);
-        out.remedy = by_person                                 ? "A person has stopped the group: give the command again when it may go on."
+        const bool of_person =
+            event.given.owner == axes::Owner::operator_panel && event.given.group_kind == axes::GroupCommandKind::interrupt && !by_person;
+        out.remedy = of_person   ? "Who disables a group ends what a person has interrupted: an override of 0 holds it, too."
+                     : by_person ? "A person has stopped the group: give the command again when it may go on."
                      : event.by.program != event.given.program ? "Two programs command this group: let one of them do it."
                                                                : "If that is not meant: wait for Done of the first, or give the second "
                                                                  "BufferMode mcBuffered.";
@@ -119,9 +122,12 @@ EventText describe(const CommandEvent& event, const runtime::MachineLayout& layo
     const auto* error = axes::find_error(event.error);
     if (event.what == What::aborted) {
         if (!out.by.empty()) {
+            const bool person_stopped = event.by.program == runtime::no_program && event.by.owner != axes::Owner::program &&
+                                        (event.by.kind == axes::CommandKind::halt || event.by.kind == axes::CommandKind::stop);
             out.what = fmt::format("{} was aborted by {}", out.who, out.by);
-            out.remedy = two_programs ? "Two programs command this axis: let one of them do it."
-                                      : "If that is not meant: wait for Done of the first, or give the second BufferMode mcBuffered.";
+            out.remedy = person_stopped ? "A person has stopped the axis: give the command again when it may go on."
+                         : two_programs ? "Two programs command this axis: let one of them do it."
+                                        : "If that is not meant: wait for Done of the first, or give the second BufferMode mcBuffered.";
         } else if (alarm) {
             out.what = fmt::format("{} was ended: the axis went into ErrorStop ({})", out.who, alarm->name);
             out.remedy = sentence(alarm->remedy);

@@ -9,7 +9,9 @@
 
 #include "apps/docs/command_pages.hpp"
 #include "apps/taktwerk.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "tests/apps/child.hpp"
+#include "tests/apps/in_process.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -73,6 +75,25 @@ TEST_F(Pages, TheCompletionIsAScriptThatCompletes) {
     EXPECT_EQ(completed("taktwerk run et", 2), "etc|") << "a file";
     EXPECT_EQ(completed("taktwerk run --nothing", 2), "|");
     std::filesystem::remove_all(folder);
+}
+
+// What people type before they have read anything.
+TEST(Help, IsACommandToo) {
+    const auto all = in_process({"help"});
+    EXPECT_EQ(all.code, exit_ok);
+    EXPECT_THAT(all.out, HasSubstr("monitor"));
+    const auto one = in_process({"help", "group", "halt"});
+    EXPECT_EQ(one.code, exit_ok);
+    EXPECT_EQ(one.out, in_process({"group", "halt", "--help"}).out);
+    EXPECT_EQ(in_process({"help", "grop"}).code, exit_usage);
+}
+
+// Who is in a hurry to stop a group does not look up what that is called.
+TEST(Help, AGroupIsStoppedByThatWord) {
+    const auto halt = in_process({"group", "halt", "arm", "-s", "/nowhere/there.is.none"});
+    const auto stop = in_process({"group", "stop", "arm", "-s", "/nowhere/there.is.none"});
+    EXPECT_EQ(stop.code, exit_no_runtime);
+    EXPECT_EQ(stop.err, halt.err);
 }
 
 }  // namespace

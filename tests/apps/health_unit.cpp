@@ -46,6 +46,16 @@ TEST(HealthOf, AMachineThatRunsIsWellAlsoWithAWarning) {
     EXPECT_TRUE(json["tasks"][0]["runs"].is_number_unsigned());
 }
 
+// A machine whose group a person holds is well, and who wonders why nothing moves is told.
+TEST(HealthOf, WhatAPersonHoldsIsNamed) {
+    auto s = state();
+    s["groups"] = Json::parse(R"([{"name":"arm","held":true},{"name":"table","held":false}])");
+    const auto h = health_of(hello(), s);
+    EXPECT_TRUE(h.well());
+    EXPECT_THAT(health_text(h), HasSubstr("group arm: a person has interrupted it; `taktwerk group continue arm` lets it go on\n"));
+    EXPECT_EQ(health_json(h)["held"], Json({"arm"}));
+}
+
 TEST(HealthOf, WhatStopsSomethingIsNamed) {
     auto s = state();
     s["alarms"].push_back({{"source", "axis y"},

@@ -179,6 +179,13 @@ TEST(MonitorScreen, AGroupSaysWhatItDoesAndWhoHoldsItBack) {
     EXPECT_THAT(lines, Contains(HasSubstr("limits a0 100 % v  a1 45 % a")));
     for (const auto& line : lines) EXPECT_LE(columns(line), 110u) << line;
 
+    auto stands = with_group;
+    stands["groups"][0]["path_velocity"] = 0;
+    stands["groups"][0]["limiter"] = "none";
+    EXPECT_THAT(monitor_screen(stands, layout, {110, 40, false}), Contains(AllOf(HasSubstr("0.0 mm/s"), Not(HasSubstr("held by")))));
+    stands["groups"][0]["operators_override"] = 0;
+    EXPECT_THAT(monitor_screen(stands, layout, {110, 40, false}), Contains(HasSubstr("0.0 mm/s, held by the override")));
+
     with_group["groups"][0]["interrupted"] = with_group["groups"][0]["held"] = true;
     with_group["groups"][0]["state"] = "GroupStandby";
     EXPECT_THAT(monitor_screen(with_group, layout, {110, 40, false}), Contains(HasSubstr("INTERRUPTED by a person")));

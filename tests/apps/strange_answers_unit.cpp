@@ -137,6 +137,29 @@ TEST(StrangeAnswers, OfEverythingElseAreTold) {
     for (const auto& command : commands) expect_told(answer, command);
 }
 
+// A switch that a program lets people write is set by its name, as an alarm says that wants it; a parameter of that name comes first.
+TEST(StrangeAnswers, ASwitchIsWrittenAsWhatItIs) {
+    json layout{{"parameters", {{{"program", "p"}, {"name", "speed"}, {"unit", "mm/s"}}}},
+                {"variables",
+                 {{{"program", "p"}, {"name", "works"}, {"unit", ""}, {"writable", true}},
+                  {{"program", "p"}, {"name", "count"}, {"unit", ""}, {"writable", false}},
+                  {{"program", "q"}, {"name", "speed"}, {"unit", ""}, {"writable", true}}}}};
+    json asked;
+    const StrangeRuntime runtime([&](const json& request) {
+        if (request.at("cmd") != "layout") asked = request;
+        return json{{"layout", layout}};
+    });
+    const auto wrote = [&](const std::string& name, const std::string& value) {
+        EXPECT_EQ(in_process({"set", name, value, "-s", runtime.path()}).code, exit_ok) << name;
+        for (const char* each : {"id", "utime"}) asked.erase(each);  // who asks, and when
+        return asked;
+    };
+    EXPECT_EQ(wrote("works", "1"), (json{{"cmd", "set_value"}, {"variable", "works"}, {"value", 1.0}}));
+    EXPECT_EQ(wrote("p.works", "false"), (json{{"cmd", "set_value"}, {"variable", "p.works"}, {"value", 0.0}}));
+    EXPECT_EQ(wrote("speed", "6m/min"), (json{{"cmd", "set_parameter"}, {"parameter", "speed"}, {"value", 100.0}}));
+    EXPECT_EQ(wrote("count", "3")["cmd"], "set_parameter") << "the machine says why not";
+}
+
 // --- a jog of a group, as the machine tells of it -----------------------------------------------------------------------------------
 
 /// A machine with a group "arm" of one axis in degrees; `jogged`: to the renewals, from 1 on. It stands from the first renewal on.

@@ -12,7 +12,7 @@ namespace {
 const std::vector<Leave> large_classes{
     {"axes/axis/axis_view.hpp", "AxisView", 71, "record: everything that one cycle shows of an axis, in one copy"},
     {"axes/port/drive_profile.hpp", "DriveProfile", 52, "record: what a drive type is; its rooms are structs in it"},
-    {"axes/group/group_view.hpp", "GroupView", 61, "record: what everybody sees of a group, in one copy"},
+    {"axes/group/group_view.hpp", "GroupView", 63, "record: what everybody sees of a group, in one copy"},
     {"axes/port/drive_feedback.hpp", "DriveFeedback", 32, "record: what a drive says in one cycle"},
     {"axes/port/drive_capabilities.hpp", "DriveCapabilities", 30, "record: what a drive can"},
     {"axes/sim/axis_objects.hpp", "AxisInputs", 31, "record: the objects that a master writes"},

@@ -57,6 +57,10 @@ TEST_F(EventTextTest, TwoProgramsAreSaidToBeTwo) {
     event.by.program = 0;
     EXPECT_THAT(text().remedy, HasSubstr("mcBuffered")) << "the same program";
 
+    event.by = {CommandKind::halt, Owner::operator_panel, runtime::no_program, nullptr};
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveAbsolute) was aborted by MC_Halt of the operator");
+    EXPECT_THAT(text().remedy, HasSubstr("A person has stopped the axis"));
+
     event.what = CommandEvent::What::refused;
     event.error = ErrorId::power_conflict;
     event.given = {CommandKind::none, Owner::program, 1, nullptr};
@@ -167,6 +171,11 @@ TEST_F(EventTextTest, AGroupsAbortedCommandSaysByWhom) {
     EXPECT_THAT(text().remedy, HasSubstr("A person has stopped the group"));
     event.by = {};
     EXPECT_EQ(text().what, "'cell.pick' (MC_MoveLinearAbsolute) was ended by the group itself");
+
+    event.by = event.given;
+    event.given = {axes::CommandKind::none, Owner::operator_panel, runtime::no_program, nullptr, axes::GroupCommandKind::interrupt};
+    EXPECT_EQ(text().what, "MC_GroupInterrupt of the operator was aborted by 'cell.pick' (MC_MoveLinearAbsolute)");
+    EXPECT_THAT(text().remedy, HasSubstr("an override of 0 holds it"));
 }
 
 }  // namespace

@@ -422,6 +422,19 @@ TEST_F(RequestsTest, AnAnswerSaysWhenTheAxisGoesSlowerThanAskedFor) {
     EXPECT_EQ(requests.next_line()->text, R"({"id":1,"ok":true,"note":"limited to 20 mm/s by setup mode"})");
 }
 
+TEST_F(RequestsTest, AnAnswerSaysWhenAContinueLeavesItToTheProgram) {
+    requests.on_line(1, R"({"id":1,"cmd":"group_continue","group":"table"})", now);
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    machine.answer(runtime::Answer::accepted);
+    machine.answers.back().waits_for_program = true;
+    gateway.step(now);
+    const auto reply = gateway.next_reply();
+    ASSERT_TRUE(reply);
+    requests.deliver(*reply);
+    EXPECT_EQ(requests.next_line()->text,
+              R"({"id":1,"ok":true,"note":"its program has interrupted it, too, and goes on with it by itself"})");
+}
+
 TEST_F(RequestsTest, HandsReachASimulatedMachineOnly) {
     const auto real = ask(R"({"id":1,"cmd":"simulate","line":"input start 1"})");
     EXPECT_EQ(real["ok"], false);

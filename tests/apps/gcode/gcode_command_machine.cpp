@@ -205,6 +205,13 @@ TEST_F(GcodeCommand, RunSaysUnitsAndWhoAsks) {
     EXPECT_THAT(rotary.text(), HasSubstr("--rotary: on a machine a stored path moves X, Y and Z"));
 }
 
+TEST_F(GcodeCommand, RunGivenTheOtherWayRoundSaysWhichComesFirst) {
+    const auto part = file("part.ngc", "G21 G0 X1\nM2\n"), machine = file("machine.yaml", "machine: {name: m}\n");
+    Child swapped({taktwerk, "gcode", "run", part, machine});
+    EXPECT_EQ(swapped.wait(20s), exit_usage);
+    EXPECT_THAT(swapped.text(), HasSubstr("gcode run " + machine + " " + part));
+}
+
 TEST_F(GcodeCommand, NothingOfAFileReachesTheTerminalAsItIs) {
     Child check({taktwerk, "gcode", "check", file("esc.ngc", "(MSG, \x1b[31mred\x1b[0m)\nG0 X1\nM2\n")});
     EXPECT_EQ(check.wait(20s), exit_ok);

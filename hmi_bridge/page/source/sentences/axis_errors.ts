@@ -194,7 +194,7 @@ export const axis_errors: Readonly<Record<string, string>> = {
     'Let it come to Standstill first (MC_Halt, or wait for Done), then give the group\'s command again': '先使其进入 Standstill（MC_Halt 或等待 Done），然后重新发出轴组命令',
     'An axis was taken out of the group\'s motion': '某个轴脱离了轴组运动',
     'Its power was taken away, another party took control of it, or it stopped for a reason of its own; the others have stopped on the path': '该轴被断开使能、被其他操作方接管或自行停止；其余的轴已在路径上停止',
-    'See what happened to the axis, give it power and control back, then MC_GroupReset': '查明该轴的原因，恢复其使能和控制权，然后执行 MC_GroupReset',
+    'See what happened to the axis, give it power and control back, then reset the group (MC_GroupReset, or `taktwerk group reset`)': '查明该轴的原因，恢复其使能和控制权，然后复位轴组（MC_GroupReset 或 `taktwerk group reset`）',
     'The axis group has no kinematics for this frame': '轴组没有用于该坐标系的运动学',
     'CoordSystem is not ACS, and nothing says where the tool is for given axes, or not for this number of axes': 'CoordSystem 不是 ACS，而轴组未配置运动学，或运动学与轴数不符',
     'Command it in ACS, or configure the group\'s kinematics': '在 ACS 中发出命令，或配置轴组的运动学',
@@ -265,6 +265,6 @@ export const axis_errors: Readonly<Record<string, string>> = {
     "The members' following errors together put the tool's point further from its set-point than the group's `following_error` allows; the group has come to rest on its path": '各成员轴的跟随误差合起来使工具点与设定点的距离超过轴组 `following_error` 的允许值；轴组已在路径上停止',
     'Look which member lags and why (load, brake, tuning, limits); slow the path down or widen the window': '检查哪个成员轴滞后及其原因（负载、制动器、整定、限制）；降低路径速度或放宽窗口',
     'A person has interrupted the group': '轴组被人员中断',
-    'It was interrupted at a panel, and MC_GroupContinue of a program does not go on behind that': '轴组是在操作面板上被中断的，程序的 MC_GroupContinue 不能使其继续',
-    'Let a person go on (`taktwerk group continue`, or the page), then the commands go on; or give the motion command again': '由人员继续（`taktwerk group continue` 或页面），命令随即继续；或重新发出运动命令',
+    'It was interrupted at a panel: no program goes on behind that, homes it, jogs it, drives it along a path or moves one of its axes alone': '轴组是在操作面板上被中断的：程序不能使其继续，也不能使其回零、点动、由轴驱动沿路径运动或单独移动其成员轴',
+    'Let a person go on (`taktwerk group continue`, or the page), then the commands go on; a motion that is commanded meanwhile waits for that': '由人员继续（`taktwerk group continue` 或页面），命令随即继续；其间发出的运动命令等待继续',
 };

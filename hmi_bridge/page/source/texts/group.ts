@@ -8,7 +8,7 @@ export const group = {
     group_GroupMoving: ['Moving', '运动中'],
     group_GroupStopping: ['Stopping', '停止中'],
     group_GroupErrorStop: ['Error stop', '故障停止'],
-    group_interrupted_by_hand: ['Interrupted by hand: it stands on its path, and Continue goes on.', '已由人工中断:停在路径上,按“继续”接着运行。'],
+    group_interrupted_by_hand: ['Interrupted by hand: it stands on its path. Continue lets it go on, unless its program has interrupted it, too.', '已由人工中断:停在路径上。按“继续”接着运行,除非程序也中断了它。'],
     group_interrupted_by_program: ['Interrupted by its program, which goes on by itself.', '已由程序中断,由程序自行继续。'],
     group_tool: ['Tool (MCS)', '工具(MCS)'],
     group_tool_actual: ['Actual', '实际'],
