@@ -12,6 +12,7 @@
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/output_files.hpp"
 #include "apps/terminal/print_error.hpp"
+#include "runtime/check/machine_remarks.hpp"
 
 namespace taktwerk::apps {
 
@@ -95,6 +96,10 @@ void add_run(CLI::App& app, Action& action) {
                 if (const auto up = fence_machine(); !up && !options->quiet) print_warning(up.error());
             auto loaded = load(options->file, loading);
             if (!loaded) return static_cast<int>(exit_bad_file);
+            if (const auto nobody = runtime::nothing_answers(loaded->machine)) {
+                print_error(*nobody);
+                return static_cast<int>(exit_bad_file);
+            }
             loaded->machine.fell_back = options->from_bundle && options->from_bundle->start().fell_back;
             if (options->without_events) loaded->machine.simulation.events.clear();
             if (!options->retain.empty()) loaded->machine.retain.directory = options->retain;

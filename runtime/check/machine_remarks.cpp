@@ -252,8 +252,15 @@ std::optional<double> stroke_seconds(const AxisConfig& axis) noexcept {
     return peak * (1 / limits.acceleration + 1 / limits.deceleration);
 }
 
+std::optional<Error> nothing_answers(const MachineConfig& config) {
+    if (!config.bus.interface.empty() || !config.bus.slaves.empty()) return std::nullopt;
+    return Error{"remark.no_slave", "bus.slaves", "a bus without a slave sends no frame back, so this machine does not run",
+                 "add one, even where all axes are virtual: { name: coupler, device: ek1100 }"};
+}
+
 std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& layout, unsigned cpus) {
     Remarks out;
+    if (auto nobody = nothing_answers(config)) out.found.push_back(std::move(*nobody));
     const bool simulated = config.bus.interface.empty();
     for (const auto& binding : config.axes) {
         const auto here = "axes." + binding.axis.name;

@@ -20,4 +20,7 @@ namespace taktwerk::runtime {
 /// `cpus`: how many this computer has.
 [[nodiscard]] std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& layout, unsigned cpus);
 
+/// A simulated bus without a slave: a machine of virtual axes alone. It is checked like any other and does not run, since no frame comes back: `run` refuses it with this.
+[[nodiscard]] std::optional<Error> nothing_answers(const MachineConfig& config);
+
 }  // namespace taktwerk::runtime

@@ -120,6 +120,29 @@ TEST_F(CommandLine, CheckTellsTheErrorsOfTheFileAndOfItsProgramsAtOnce) {
     EXPECT_THAT(programs_alone.text, AllOf(unknown_parameter, unknown_axis));
 }
 
+// Without a slave no frame comes back, and nobody shall look for a cable that a simulated bus does not have.
+TEST_F(CommandLine, VirtualAxesAloneNeedASlave) {
+    const auto machine = [&](const std::string& slaves) {
+        std::filesystem::create_directories(folder_ + "/machines");
+        if (!std::filesystem::exists(folder_ + "/devices"))
+            std::filesystem::create_directory_symlink(std::filesystem::path(machines) / ".." / "devices", folder_ + "/devices");
+        return file("machines/v.yaml", "version: 1\nname: v\ncycle: 1 ms\nbus: { interface: simulated, slaves: [" + slaves +
+                                           "] }\naxes:\n  x: { unit: mm, gearing: { counts_per_revolution: 1000, feed: 10 mm }, "
+                                           "limits: { velocity: 100 mm/s, acceleration: 1000 mm/s2, jerk: none } }\n");
+    };
+    const auto run = [&](const std::string& slaves) { return command({"run", machine(slaves), "--virtual-time", "--duration", "1s"}); };
+    const auto says = AllOf(HasSubstr("a bus without a slave sends no frame back"), HasSubstr("{ name: coupler, device: ek1100 }"));
+    const auto checked = command({"check", machine("")});
+    EXPECT_EQ(checked.code, exit_ok) << checked.text;
+    EXPECT_THAT(checked.text, AllOf(says, HasSubstr("1 remark to look at"))) << checked.text;
+    const auto alone = run("");
+    EXPECT_EQ(alone.code, exit_bad_file);
+    EXPECT_THAT(alone.text, AllOf(says, Not(HasSubstr("cable"))));
+    const auto with_coupler = run("{ name: coupler, device: ek1100 }");
+    EXPECT_EQ(with_coupler.code, exit_ok) << with_coupler.text;
+    EXPECT_THAT(with_coupler.text, HasSubstr("0 frames lost"));
+}
+
 TEST_F(CommandLine, CheckSaysWhatADriveDoesWhenTheMasterIsGone) {
     const auto checked = command({"check", machines + "demo.yaml"});
     EXPECT_EQ(checked.code, exit_ok) << checked.text;

@@ -334,6 +334,13 @@ TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
               }).code,
               "remark.emergency_stop_inverted");
     EXPECT_EQ(remark([](MachineConfig& m) { m.realtime.cpus = {99}; }).code, "remark.cpu");
+    EXPECT_EQ(remark([](MachineConfig& m) {
+                  m.bus.slaves.clear();
+                  m.axes.clear();
+                  m.io.clear();
+                  m.emergency_stop.input.clear();
+              }).code,
+              "remark.no_slave");
     const auto upper_limit = [](double limit) {
         return remark([limit](MachineConfig& m) {
             m.io[0].line.fit(16, true);
