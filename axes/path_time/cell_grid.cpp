@@ -15,8 +15,9 @@ constexpr int stations_between = 8;  // of a span that bends
 // A cell is at most this part of a run; of one where it bends; of one of many spans.
 constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
 constexpr double rest_share = 0.2;  // of the way with jerk that the piece at rest takes
-// That piece cannot be cut, and who wants to stand waits for its end: it lasts no longer than this at a beginning.
-constexpr double longest_start = 0.012;  // s
+// That piece cannot be cut, and who wants to stand waits for its end: it lasts no longer than this at a beginning. Nor at the end of a curve: its
+// one jerk is what the limits allow at its moving end, which may be a tenth of what they allow where it stands.
+constexpr double longest_rest = 0.012;  // s
 // Nor is it shorter than this part of the run, however slow that is: cells have to be longer than a place's last digits.
 constexpr double shortest_rest = 1e-9;
 constexpr std::size_t most_cells = 200'000;  // a run that asks for more is not planned
@@ -107,21 +108,22 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     coarse = grain == Grain::coarse || breaks.size() > long_run;
     const double whole = task.to - task.from;
     const auto rest_length = [&](double at, CurveSide side, double room) {
-        const AlongLimits l = along_limits(curve.at(at, side), limits, task.velocity_factor);
+        const TimedCurvePoint point = curve.at(at, side);
+        const AlongLimits l = along_limits(point, limits, task.velocity_factor);
         double way = whole / 12;  // a motion of jerk alone turns from speeding up to less of it there
         const double a = std::min(l.acceleration, l.deceleration);
         way = std::min(way, a * a * a / (6 * l.jerk * l.jerk));
         way = std::min(way, std::sqrt(l.velocity / l.jerk) * l.velocity / 6);
-        return std::min(std::max(rest_share * way, shortest_rest * whole), room / 3);
+        const double rest = std::min(std::max(rest_share * way, shortest_rest * whole), room / 3);
+        const bool bends = std::any_of(point.second.begin(), point.second.end(), [](double second) { return second != 0; });
+        if (side == CurveSide::before && (!bends || task.halt_share > 0)) return rest;
+        return std::min(rest, std::max(l.jerk * longest_rest * longest_rest * longest_rest / 6, shortest_rest * whole));
     };
     const bool from_rest = task.velocity <= 0;
     start = {};
     end = {};
-    if (from_rest) {
-        const double jerk = along_limits(curve.at(task.from, CurveSide::after), limits, 1).jerk;
-        start.rest_length = std::min(rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]),
-                                     std::max(jerk * longest_start * longest_start * longest_start / 6, shortest_rest * whole));
-    } else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
+    if (from_rest) start.rest_length = rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]);
+    else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
     end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
     add_stations(whole / (coarse ? most_of_coarse_run : most_of_run), task.brake_way);

@@ -10,11 +10,14 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr double slow_share = 0.02;            // of v2: what goes on where a former plan stopped
-constexpr double braking_share = 0.7;          // of the deceleration and the jerk, to a lowered velocity
-constexpr double guessed_share = 0.75;         // the same where the search begins: a little below
-constexpr double guessed_below = 0.97;         // of that velocity
-constexpr double over_ramp = 1.0005;           // of v2 on that braking: what cells cannot follow
+constexpr double slow_share = 0.02;      // of v2: what goes on where a former plan stopped
+constexpr double brisk_share = 0.5;      // likewise, where that one finds no way
+constexpr double braking_share = 0.7;    // of the deceleration and the jerk, to a lowered velocity
+constexpr double guessed_share = 0.75;   // the same where the search begins: a little below
+constexpr double rise_share = 0.8;       // of what those leave of the jerk, that is left where an acceleration has to go first
+constexpr double below_for_sure = 0.99;  // of that velocity, that an acceleration is gone at with all of the jerk: then it stays below
+constexpr double guessed_below = 0.97;   // of that velocity
+constexpr double over_ramp = 1.0005;     // of v2 on that braking: what cells cannot follow
 constexpr std::size_t most_taken_over = 3000;  // cells of a former plan, which was cut into pieces
 
 }  // namespace
@@ -28,6 +31,7 @@ void RunPlanner::measure_braking() {
         task_.halt_last = braking.last_way();
     } else if (slower_) {
         const Braking braking = braking_to_factor(guessed_below, braking_share);
+        if (braking.top() <= guessed_below * wanted_first()) return;  // it only has to stop speeding up
         const double way = braking.way();
         if (!(way > 0 && way < 0.9 * (task_.to - task_.from))) return;
         task_.brake_way = way;
@@ -37,7 +41,7 @@ void RunPlanner::measure_braking() {
 }
 
 /// Velocities without jerk, from both ends, lowered: a beginning from which the limits can be left alone.
-void RunPlanner::first_guess() {
+void RunPlanner::first_guess(double square) {
     const auto& nodes = grid_.nodes;
     const std::size_t n = nodes.size() - 1;
     const double start_rest = grid_.start.rest_length, end_rest = grid_.end.rest_length;
@@ -64,7 +68,7 @@ void RunPlanner::first_guess() {
         };
         if (start_rest > 0) from_rest(s - task_.from);
         from_rest(task_.to - s);
-        const double before = i > 0 ? middles_[i - 1] : 0;
+        const double before = i > 0 ? middles_[i - 1] : square;
         const double way = i > 0 ? (nodes[i + 1] - nodes[i - 1]) / 2 : (nodes[1] - nodes[0]) / 2 + start_rest;
         middles_[i] = std::min(cap, before + 1.6 * l.acceleration * way);
     }
@@ -96,6 +100,7 @@ void RunPlanner::take_over(const RunShape& former) {
     }
     std::vector<double> nodes(former.nodes.begin() + static_cast<std::ptrdiff_t>(from),
                               former.nodes.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+    const double brakes_from = former.nodes[kept];
     nodes.front() = task_.from;
     if (!same_end)
         for (const double node : grid_.nodes)
@@ -105,7 +110,7 @@ void RunPlanner::take_over(const RunShape& former) {
     make_problem();
 
     // Slow enough for everything, as from rest.
-    first_guess();
+    first_guess(brisk_ ? task_.velocity * task_.velocity : 0);
     std::size_t cell = from;
     const auto former_square = [&](double s) {
         while (cell + 1 < former.middles.size() && former.nodes[cell + 1] < s) ++cell;
@@ -130,7 +135,9 @@ void RunPlanner::take_over(const RunShape& former) {
         // Behind that braking as well, where the path itself is slower.
         if (slower_ && half > task_.from + braking.way() && wanted_below(i))
             lowered = std::min(lowered, guessed_below * guessed_below * middles_[i]);
-        middles_[i] = std::min(std::max(2 * middle - (first + last) / 2, slow_share * middles_[i]), lowered);
+        middles_[i] = std::min(
+            std::max(2 * middle - (first + last) / 2, (brisk_ && grid_.nodes[i] >= brakes_from ? brisk_share : slow_share) * middles_[i]),
+            lowered);
         if (middle > 0) first_window_ = static_cast<int>(i) + 1;
     }
     if (!slower_) return;
@@ -174,11 +181,14 @@ void RunPlanner::make_ramp() {
     const double wanted = wanted_first();
     if (!slower_ && task_.velocity <= wanted) return;
     const double way = braking.way();
-    if (!(way > 0)) return;
+    if (!(way > 0) || top_velocity(along_limits(curve_->at(task_.from, CurveSide::after), limits_, 1).jerk) <= below_for_sure * wanted)
+        return;
     BrakingByWay by_way(braking);
-    // As parts of what is wanted: where the path is slower by itself, so is the ramp.
+    // As parts of what is wanted: where the path is slower by itself, so is the ramp. Who was slower than his former factor allows stays so.
+    const double former = slower_ ? former_factor_ / task_.velocity_factor : unlimited,
+                 most = task_.velocity <= former * wanted ? former * former : unlimited;
     const auto square = [&](double s) {
-        return s < task_.from + way ? over_ramp * std::pow(by_way.velocity(s - task_.from) / wanted, 2) : 0;
+        return s < task_.from + way ? std::min(most, over_ramp * std::pow(by_way.velocity(s - task_.from) / wanted, 2)) : 0;
     };
     double first = square(grid_.nodes.front());
     for (std::size_t i = 0; i + 1 < grid_.nodes.size() && first > 0; ++i) {
@@ -200,11 +210,21 @@ double RunPlanner::wanted_first() const {
     return along_limits(curve_->at(task_.from, CurveSide::after), limits_, task_.velocity_factor).velocity;
 }
 
+/// To which it speeds up while its acceleration goes with this jerk.
+double RunPlanner::top_velocity(double jerk) const {
+    const double rising = std::max(task_.acceleration, 0.0);
+    return task_.velocity + rising * rising / (2 * jerk);
+}
+
 /// To this part of it, where the beginning is above it, with this share of the limits.
 Braking RunPlanner::braking_to_factor(double part, double share) const {
     const AlongLimits l = along_limits(curve_->at(task_.from, CurveSide::after), limits_, 1);
     const double own = task_.softness * share;
-    return {task_.velocity, task_.acceleration, own * l.deceleration, own * l.jerk, std::min(part * wanted_first(), task_.velocity)};
+    // An acceleration that is still there goes with nearly all of the jerk, as it would in a plan that stays below: else it would become faster than it ever was to be.
+    const double rise_jerk = task_.softness * (1 - rise_share * (1 - share)) * l.jerk;
+    return {
+        task_.velocity, task_.acceleration, own * l.deceleration, own * l.jerk, std::min(part * wanted_first(), top_velocity(rise_jerk)),
+        rise_jerk};
 }
 
 /// What a search does not come to is left above a lowered velocity: until when?

@@ -341,6 +341,7 @@ void RunPlanner::plan_whole(const RunTask& task, RunPlan& out, const RunShape* f
     split_.clear();
     splits_left_ = task.velocity > 0 ? split_rounds_moving : split_rounds;
     slower_ = former != nullptr && task.velocity_factor < former->velocity_factor;
+    former_factor_ = slower_ ? former->velocity_factor : 1;
     measure_braking();
     grid_.make(*curve_, limits_, task_,
                former != nullptr && former->coarse && task.halt_share <= 0 ? CellGrid::Grain::coarse : CellGrid::Grain::by_run);
@@ -437,14 +438,26 @@ void RunPlanner::plan(const TimedCurve& curve, std::span<const PathAxisLimits> l
             tail.from = former->nodes[kept];
             tail.velocity = std::sqrt(former->squares[kept]);
             tail.acceleration = (former->middles[kept] - former->squares[kept]) / (former->nodes[kept + 1] - former->nodes[kept]);
-            plan_whole(tail, out, former);
+            plan_onward(tail, out, former);
             if (out.found) {
                 keep_before(kept, task, *former, out);
                 return;
             }
         }
     }
+    plan_onward(task, out, former);
+}
+
+/// Where an end has moved on, the former plan's braking for it may be no beginning: then from above it.
+void RunPlanner::plan_onward(const RunTask& task, RunPlan& out, const RunShape* former) {
     plan_whole(task, out, former);
+    if (out.found || former == nullptr || task.velocity <= 0 || task.halt_share > 0 || slower_ || !(task.to > former->end)) return;
+    // While its deceleration goes, most of the velocity has to be left: else it is on the edge of standing, and nothing is found from anywhere.
+    const double falling = std::min(task.acceleration, 0.0), jerk = along_limits(curve_->at(task.from, CurveSide::after), limits_, 1).jerk;
+    if (falling * falling / (2 * jerk) > 0.5 * task.velocity) return;
+    brisk_ = true;
+    plan_whole(task, out, former);
+    brisk_ = false;
 }
 
 }  // namespace taktwerk::axes

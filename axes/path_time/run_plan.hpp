@@ -52,19 +52,21 @@ private:
     /// A hair below, so that what rounding leaves is inside.
     static constexpr CellShare untouched{1 - 1e-5, 1 - 1e-5, 1 - 1e-5};
 
+    void plan_onward(const RunTask& task, RunPlan& out, const RunShape* former);
     void plan_whole(const RunTask& task, RunPlan& out, const RunShape* former);
     [[nodiscard]] std::size_t grows_from(const RunTask& task, const RunShape& former) const;
     void keep_before(std::size_t kept, const RunTask& task, const RunShape& former, RunPlan& out) const;
     void make_problem();
     void add_cell(int cell);
     void measure_braking();
-    void first_guess();
+    void first_guess(double square = 0);
     void take_over(const RunShape& former);
     void brake();
     void make_ramp();
     void make_halt();
     [[nodiscard]] Braking halt_braking() const;
     [[nodiscard]] double wanted_first() const;
+    [[nodiscard]] double top_velocity(double jerk) const;
     [[nodiscard]] Braking braking_to_factor(double part, double share) const;
     bool sweep(SpeedGuess guess, RunPlan& out);
     bool solve(const CellRange& range, SpeedGuess guess, SpeedWitness* witness, RunPlan& out);
@@ -101,9 +103,11 @@ private:
     std::vector<CellShare> shares_;             // what share of each limit a cell may use
     std::vector<int> beyond_;                   // cells that use more than they may
     std::vector<int> split_;
-    bool slower_ = false;   // the velocity factor is lower than that of the former plan
-    int splits_left_ = 0;   // rounds that may still do so
-    int first_window_ = 0;  // cells that have to be solved at once
+    bool brisk_ = false;        // the search begins above the former plan where that brakes for an end that has moved on
+    bool slower_ = false;       // the velocity factor is lower than that of the former plan
+    double former_factor_ = 1;  // that one, then
+    int splits_left_ = 0;       // rounds that may still do so
+    int first_window_ = 0;      // cells that have to be solved at once
 };
 
 }  // namespace taktwerk::axes

@@ -186,10 +186,10 @@ void report(const char* what, const Feeding& f) {
         f.worst.jerk - 1, f.worst_step - 1);
 }
 
-/// That nothing is found from somewhere: the cycle goes on meanwhile. It may take 15 ways to rest and 60 steps for each.
+/// That nothing is found from somewhere: the cycle goes on meanwhile. It may take 15 ways to rest and 60 steps for each. Where an end has moved on, two beginnings are searched from.
 void expect_said_soon(const Feeding& f) {
     EXPECT_LT(f.failed_tries, 4 * f.failed);
-    EXPECT_LT(f.failed_steps, 40 * f.failed);
+    EXPECT_LT(f.failed_steps, 2 * 40 * f.failed);
 }
 
 TEST(PathServiceProperty, UndisturbedProgramsArrive) {
