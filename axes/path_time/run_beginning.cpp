@@ -222,9 +222,8 @@ Braking RunPlanner::braking_to_factor(double part, double share) const {
     const double own = task_.softness * share;
     // An acceleration that is still there goes with nearly all of the jerk, as it would in a plan that stays below: else it would become faster than it ever was to be.
     const double rise_jerk = task_.softness * (1 - rise_share * (1 - share)) * l.jerk;
-    return {
-        task_.velocity, task_.acceleration, own * l.deceleration, own * l.jerk, std::min(part * wanted_first(), top_velocity(rise_jerk)),
-        rise_jerk};
+    const double to = std::min(part * wanted_first(), top_velocity(rise_jerk));
+    return {task_.velocity, task_.acceleration, own * l.deceleration, own * l.jerk, to, rise_jerk};
 }
 
 /// What a search does not come to is left above a lowered velocity: until when?
