@@ -757,7 +757,7 @@ TEST(IndependentTime, DrawnPlansKeepEveryLimit) {
     EXPECT_LE(furthest_above, 1 + 1e-3);
 }
 
-// ------------------------------------------------------------------------------------------------------------------ what does not hold
+// ------------------------------------------------------------------------------------------------------------------ what did not hold, and what does not
 
 /// The highest velocity of a plan.
 double top_of(const RunPlan& plan) {
@@ -813,8 +813,8 @@ LoweredInARamp lowered_in_a_ramp(double factor) {
         found.told, found.above_both, found.beside_former, found.above_though_below, found.beside_new);
     return found;
 }
-// Who is told to be slower while it speeds up is never faster than it was allowed to be before. It is: its acceleration goes with seven tenths of the jerk, where the plan that runs
-// has it go with all of it. Of 60 u/s, told 48 at 29 u/s and 738 u/s2: 68 u/s.
+// Who is told to be slower while it speeds up is never faster than it was allowed to be before. It was: its acceleration went as if it had to come back to the velocity of now. Of 60 u/s,
+// told 48 at 29 u/s and 738 u/s2: 68 u/s.
 TEST(IndependentTime, WhoIsToldToBeSlowerIsNeverFasterThanBefore) { EXPECT_EQ(lowered_in_a_ramp(0.6).above_both, 0); }
 TEST(IndependentTime, WhoIsBelowALoweredVelocityAndCanStayThereDoes) { EXPECT_EQ(lowered_in_a_ramp(0.6).above_though_below, 0); }
 
@@ -840,7 +840,7 @@ TEST(IndependentTime, AnEndThatMovesOnIsGoneOnTo) {
     std::printf("%d borders, %d not found\n", easy, lost);
     EXPECT_EQ(lost, 0);
 }
-// On an arc none is found from states that still speed up, where the search comes to a motion that keeps every limit.
+// On an arc none was found from states that still speed up, where this search comes to a motion that keeps every limit.
 TEST(IndependentTime, AnEndThatMovesOnIsGoneOnToOnAnArc) {
     Path small_arc;
     append(small_arc, arc(at(0, 0), 2, 0.3, 2.5, 1));
@@ -894,9 +894,8 @@ TEST(IndependentTime, DISABLED_RunsOfManySectionsComeAsNear) {
     EXPECT_LE(plan.duration, f.duration * (1 + promised));
 }
 
-// Limits are the same in both directions, so the way back takes as long as the way there. It does not where a run ends on an arc at a place where an axis of little jerk has q' = 0: the
-// piece to rest is one of constant jerk, as its beginning allows, and may last 50 ms; the one out of rest lasts 12. 0.529 s there, 0.508 s back (4.1 %). So does drawn 33: 11 % above
-// what is found, 24 of 344 ms in its last fiftieth.
+// Limits are the same in both directions, so the way back takes as long as the way there. It did not where a run ends on an arc at a place where an axis of little jerk has q' = 0: the
+// piece to rest is one of constant jerk, as its moving end allows, and lasted 50 ms there. 0.529 s there, 0.508 s back (4.1 %).
 TEST(IndependentTime, TheWayBackTakesAsLong) {
     RunPlanner planner;
     for (const double radius : {0.5, 5.0})
@@ -921,6 +920,7 @@ TEST(IndependentTime, TheWayBackTakesAsLong) {
                 EXPECT_NEAR(durations[0] / durations[1], 1, promised) << radius << ' ' << weak << ' ' << past;
             }
 }
+// Drawn 33 was 11 % above what is found, 24 of 344 ms in its last fiftieth; since that piece lasts 12 ms at most some 6 %.
 TEST(IndependentTime, DISABLED_AnEndOnAnArcIsComeToSoon) {
     Gaps gaps;
     for (const std::uint64_t seed : {2, 33, 61}) from_rest(drawn_case(seed), 0, gaps);
