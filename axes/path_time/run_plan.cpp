@@ -452,7 +452,7 @@ void RunPlanner::plan(const TimedCurve& curve, std::span<const PathAxisLimits> l
 void RunPlanner::plan_onward(const RunTask& task, RunPlan& out, const RunShape* former) {
     plan_whole(task, out, former);
     if (out.found || former == nullptr || task.velocity <= 0 || task.halt_share > 0 || slower_ || !(task.to > former->end)) return;
-    // While its deceleration goes, most of the velocity has to be left: else it is on the edge of standing, and nothing is found from anywhere.
+    // While its deceleration goes, half of the velocity has to be left: who is nearer to standing is seldom helped, and waits for a second search.
     const double falling = std::min(task.acceleration, 0.0), jerk = along_limits(curve_->at(task.from, CurveSide::after), limits_, 1).jerk;
     if (falling * falling / (2 * jerk) > 0.5 * task.velocity) return;
     brisk_ = true;

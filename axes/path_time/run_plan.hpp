@@ -44,7 +44,7 @@ class RunPlanner final : SpeedWitness {
 public:
     /// Fastest along the curve. `limits`: one per axis of the curve. From a moving state: `former` is the plan that has this state at one of its
     /// nodes; it is where the search begins. Where only the run's end has moved on, what `former` does before it brakes for its own end is taken as
-    /// it is. Not found: the state cannot be left better than the former plan does, which goes on.
+    /// it is. Not found: the former plan goes on; that nothing better is found does not say that there is nothing.
     void plan(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RunTask& task, RunPlan& out,
               const RunShape* former = nullptr);
 
