@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "axes/kinematics/angle_of.hpp"
 #include "axes/kinematics/axis_lines.hpp"
 #include "axes/kinematics/two_links.hpp"
 #include "axes/kinematics/wrist_angles.hpp"
@@ -62,7 +63,7 @@ ArmSolutions ParallelArm::solve(const Frame<double>& flange, const Joints& near)
         const double reached = side * ahead;
         const double c1 = on_axis ? std::cos(model(near, 0)) : (x * reached - y * aside_) / square;
         const double s1 = on_axis ? std::sin(model(near, 0)) : (y * reached + x * aside_) / square;
-        const double first = std::atan2(s1, c1);
+        const double first = angle_of(s1, c1);
         // In the frame of the arm's plane: front, up, across.
         Frame<double> turn;
         for (std::size_t k = 0; k < 3; ++k) {

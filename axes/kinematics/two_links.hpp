@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/kinematics/angle_of.hpp"
 #include "axes/kinematics/arm_solutions.hpp"
 
 namespace taktwerk::axes {
@@ -15,8 +16,8 @@ struct TwoLinks {
     double sine = 0, cosine = 1;                  ///< of a
     double between_sine = 0, between_cosine = 1;  ///< of the angle between the links, 0 when stretched
 
-    [[nodiscard]] double angle() const noexcept { return std::atan2(sine, cosine); }
-    [[nodiscard]] double between() const noexcept { return std::atan2(between_sine, between_cosine); }
+    [[nodiscard]] double angle() const noexcept { return angle_of(sine, cosine); }
+    [[nodiscard]] double between() const noexcept { return angle_of(between_sine, between_cosine); }
     [[nodiscard]] TwoLinks with_end_turned() const noexcept {  ///< sine and cosine of a + between
         return {sine * between_cosine + cosine * between_sine, cosine * between_cosine - sine * between_sine, between_sine, between_cosine};
     }

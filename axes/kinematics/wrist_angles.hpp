@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "axes/kinematics/angle_of.hpp"
 #include "axes/kinematics/frame.hpp"
 
 namespace taktwerk::axes {
@@ -24,9 +25,9 @@ inline void wrist_angles(const Frame<double>& turn, double held_first, WristAngl
     const bool held = sine < wrist_held_below;
     const double c = held ? std::cos(held_first) : x / sine, s = held ? std::sin(held_first) : y / sine;
     WristAngles& w = ways[0];
-    w.first = held ? held_first : std::atan2(s, c);
-    w.second = std::atan2(held ? std::abs(c * x + s * y) : sine, turn.axis[2][2]);
-    w.third = std::atan2(c * turn.axis[0][1] - s * turn.axis[0][0], c * turn.axis[1][1] - s * turn.axis[1][0]);
+    w.first = held ? held_first : angle_of(s, c);
+    w.second = angle_of(held ? std::abs(c * x + s * y) : sine, turn.axis[2][2]);
+    w.third = angle_of(c * turn.axis[0][1] - s * turn.axis[0][0], c * turn.axis[1][1] - s * turn.axis[1][0]);
     // The other way: the outer two half a turn on. Held, the first one stays.
     ways[1] = held ? WristAngles{w.first, -w.second, w.third} : WristAngles{w.first + pi, -w.second, w.third + pi};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "axes/kinematics/angle_of.hpp"
 #include "axes/kinematics/axis_lines.hpp"
 #include "axes/kinematics/two_links.hpp"
 #include "axes/kinematics/wrist_angles.hpp"
@@ -69,7 +70,7 @@ ArmSolutions WristArm::solve(const Frame<double>& flange, const Joints& near) co
             found.missed(KinematicFault::out_of_reach, lacking);
             continue;
         }
-        const double first = std::atan2(s1, c1), between = ways[0].between();
+        const double first = angle_of(s1, c1), between = ways[0].between();
         for (const TwoLinks& way : ways) {
             const double bent = &way == &ways[0] ? between : -between;
             const double second = way.angle(), third = bent - bend_;
