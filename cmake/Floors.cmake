@@ -184,12 +184,6 @@ function(taktwerk_tests folder)
         set(patience 900)  # a sanitized machine takes several times as long
       endif()
       set_tests_properties(${binary} PROPERTIES LABELS ${kind} TIMEOUT ${patience})
-      if(TAKTWERK_SANITIZE STREQUAL "thread" AND binary STREQUAL "runtime_machine")
-        # Twelve minutes of the thread sanitizer on one processor: in two halves, side by side (`./dev ci`).
-        add_test(NAME ${binary}_rest COMMAND ${binary} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
-        set_tests_properties(${binary} PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=0")
-        set_tests_properties(${binary}_rest PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=1;GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/test-results/${binary}_rest.xml" LABELS ${kind} TIMEOUT ${patience})
-      endif()
       list(FIND TAKTWERK_LONG_TESTS ${binary} place)
       if(place GREATER_EQUAL 0)
         math(EXPR place "${place} + 1")

@@ -1,5 +1,5 @@
 // A slower task that does not keep its time stops its own program, and nothing else. In virtual time a task does not come back when nobody
-// runs it (tests/runtime/task_threads_machine.cpp has one that really does not).
+// runs it (tests/runtime/threads/task_threads_machine.cpp has one that really does not).
 
 #include "runtime/alarms.hpp"
 #include "runtime/tasks/task_watch.hpp"

@@ -92,7 +92,7 @@ order. *failed, then came back*: the bring-up ended with an error that says what
 ended, which stopped within its time all the same.
 
 An endless loop in a program is the same in virtual time as no time at all, so it is not drawn here: `tests/apps/alone/master_death_machine.cpp` (in the cycle: the watch
-ends the process, the drives stop by themselves) and `tests/runtime/task_threads_machine.cpp` (in a slower task: `task_watchdog`) have it.
+ends the process, the drives stop by themselves) and `tests/runtime/threads/task_threads_machine.cpp` (in a slower task: `task_watchdog`) have it.
 
 )";
 
