@@ -1,11 +1,11 @@
 // Limits alone, beside independent_time_property.cpp: of plans drawn at random, where a factor is lowered, and where the end moves on.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+
+#include <gtest/gtest.h>
 
 #include "axes/path_time/run_plan.hpp"
 #include "tests/axes/path/points.hpp"

@@ -1,7 +1,5 @@
 // What is open of what independent_time_property.cpp looks at: tests named DISABLED_.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,8 @@
 #include <numbers>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "axes/path_time/run_plan.hpp"
 #include "tests/axes/path/points.hpp"

@@ -4,8 +4,6 @@
 // TAKTWERK_SOAK_FACTOR takes more cases, and from 2 on finer searches; 40 has all of them. TAKTWERK_PROGRAMS_FIRST=<seed> is where the drawn ones begin.
 // Tests named DISABLED_ (independent_open_property.cpp) show what does not hold today: --gtest_also_run_disabled_tests.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +12,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "axes/path_time/run_plan.hpp"
 #include "tests/axes/path/points.hpp"
