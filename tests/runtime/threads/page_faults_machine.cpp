@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "runtime/alarms.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
