@@ -197,11 +197,32 @@ std::string paths_text(const runtime::MachineConfig& config) {
     return out;
 }
 
+namespace {
+
+/// Where the tool's point stands with all axes at 0 (angles in rad), and what it comes to over their travels; null: not known, or nowhere.
+void add_places(nlohmann::ordered_json& out, const runtime::MachineConfig& config, const axes::AxisGroupConfig& group) {
+    out["at_zero"] = nullptr;
+    out["reach"] = nullptr;
+    if (!group.kinematics) return;
+    const auto at = group.kinematics->forward({}, group.equipment.tool_pose());
+    const auto reach = runtime::reach_of(config, group);
+    if (at.miss.ok()) {
+        const axes::SixNumbers pose = axes::numbers_of(at.pose);
+        for (std::size_t i = 0; i < pose.size(); ++i) out["at_zero"][axes::pose_component_names[i]] = pose[i];
+    }
+    if (!reach || reach->points.empty()) return;
+    for (std::size_t i = 0; i < reach->least.size(); ++i) out["reach"][axes::pose_component_names[i]] = {reach->least[i], reach->most[i]};
+    out["reach"]["without_pose"] = 1 - static_cast<double>(reach->points.size()) / static_cast<double>(reach->looked_at);
+}
+
+}  // namespace
+
 nlohmann::ordered_json axis_groups_json(const runtime::MachineConfig& config) {
     auto out = nlohmann::ordered_json::array();
-    for (const auto& group : config.axis_groups)
+    for (const auto& group : config.axis_groups) {
         out.push_back({{"name", group.name},
                        {"members", group.members},
+                       {"unit", group.unit},
                        {"arm", group.kinematics ? std::string(arm_words[group.kinematics->kind()]) : std::string{}},
                        {"commands", group.kinematics ? commanded(*group.kinematics) : std::string{}},
                        {"default",
@@ -209,6 +230,8 @@ nlohmann::ordered_json axis_groups_json(const runtime::MachineConfig& config) {
                          {"acceleration", group.default_dynamics.acceleration},
                          {"deceleration", group.default_dynamics.deceleration},
                          {"jerk", group.default_dynamics.jerk}}}});
+        add_places(out.back(), config, group);
+    }
     return out;
 }
 

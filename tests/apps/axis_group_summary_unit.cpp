@@ -1,5 +1,7 @@
 // What `taktwerk check` says of groups and their paths: what a builder of machines compares with the arm in front of him.
 
+#include <numbers>
+
 #include <gmock/gmock.h>
 
 #include "apps/machine/axis_group_summary.hpp"
@@ -45,6 +47,28 @@ TEST(AxisGroupSummary, SaysWhichArmItIsAndWhereItStands) {
     EXPECT_THAT(dressed, HasSubstr("at most 100 mm/s"));
     EXPECT_EQ(axis_groups_json(config)[0]["arm"], "a SCARA");
     EXPECT_EQ(axis_groups_text({}), "");
+}
+
+TEST(AxisGroupSummary, TellsScriptsWhereItStandsAndComes) {
+    auto config = scara();
+    auto group = axis_groups_json(config)[0];
+    EXPECT_EQ(group["unit"], "mm");
+    EXPECT_EQ(group["at_zero"]["X"], 350);
+    EXPECT_EQ(group["at_zero"]["C"], 0);
+    EXPECT_TRUE(group["reach"].is_null()) << "of an axis j3 without ends";
+
+    for (const char* name : {"j1", "j2", "j3", "j4"}) {
+        runtime::AxisBinding binding;
+        binding.axis.name = name;
+        binding.axis.limits.position_min = std::string(name) == "j3" ? -80 : -std::numbers::pi / 2;
+        binding.axis.limits.position_max = std::string(name) == "j3" ? 20 : std::numbers::pi / 2;
+        config.axes.push_back(binding);
+    }
+    group = axis_groups_json(config)[0];
+    EXPECT_EQ(group["reach"]["Z"], (nlohmann::ordered_json{-80.0, 20.0}));
+    EXPECT_NEAR(group["reach"]["X"][1].get<double>(), 350, 0.4);
+    EXPECT_NEAR(group["reach"]["X"][0].get<double>(), -150, 0.4) << "j1 and j2 at 90 degrees, the same way";
+    EXPECT_EQ(group["reach"]["without_pose"], 0);
 }
 
 TEST(AxisGroupSummary, SaysWhatAPathAsksFor) {
