@@ -5,6 +5,7 @@
 #include <optional>
 #include <regex>
 #include <sstream>
+#include <string_view>
 
 namespace taktwerk::architecture {
 namespace {
@@ -189,6 +190,7 @@ Violations check_folder_graph(const FolderGraph& graph) {
 
 Violations check_determinism(const std::vector<SourceFile>& files) {
     struct Banned {
+        std::vector<std::string_view> in_each;  // one of them stands in whatever is banned: most lines are spared the slow search
         std::regex call;
         std::vector<std::string> allowed_in;
         std::string why;
@@ -196,18 +198,23 @@ Violations check_determinism(const std::vector<SourceFile>& files) {
     // core/ owns the clock; the bridge and the commands stamp messages and files for people.
     const std::vector<std::string> stamps{"core", "hmi_bridge", "apps"};
     static const std::array<Banned, 3> banned{{
-        {std::regex(R"(_clock\s*::\s*now\b|\b(gettimeofday|clock_gettime|timespec_get)\s*\(|\bstd::time\s*\()"), stamps,
+        {{"clock", "time"},
+         std::regex(R"(_clock\s*::\s*now\b|\b(gettimeofday|clock_gettime|timespec_get)\s*\(|\bstd::time\s*\()"),
+         stamps,
          "reads a clock; time comes as an argument"},
-        {std::regex(R"(\b(s?rand|drand48)\s*\(|\brandom_device\b)"), {}, "draws random numbers without a seed from outside"},
-        {std::regex(R"(\bthis_thread\s*::\s*sleep_|\b(u|nano)?sleep\s*\()"), stamps, "sleeps by itself; components step"},
+        {{"rand"}, std::regex(R"(\b(s?rand|drand48)\s*\(|\brandom_device\b)"), {}, "draws random numbers without a seed from outside"},
+        {{"sleep"}, std::regex(R"(\bthis_thread\s*::\s*sleep_|\b(u|nano)?sleep\s*\()"), stamps, "sleeps by itself; components step"},
     }};
+    const auto may_be = [](const Banned& rule, const std::string& line) {
+        return std::any_of(rule.in_each.begin(), rule.in_each.end(), [&](auto part) { return line.find(part) != std::string::npos; });
+    };
     Violations violations;
     for (const auto& file : files) {
         std::istringstream code(code_of(file.text, Literals::blank));
         std::string line;
         for (std::size_t number = 1; std::getline(code, line); ++number)
             for (const auto& rule : banned)
-                if (!in_any(file.path, rule.allowed_in) && std::regex_search(line, rule.call))
+                if (!in_any(file.path, rule.allowed_in) && may_be(rule, line) && std::regex_search(line, rule.call))
                     violations.push_back(at(file, number) + rule.why);
     }
     return violations;
