@@ -1,6 +1,6 @@
 #pragma once
 // The angle whose sine and cosine have the ratio of two numbers, without a branch: what closed forms spend most of their time on. std::atan2, right
-// to the last bit, takes three times as long, most of it for branches that nobody can foretell. Pure, real-time safe.
+// to the last bit, takes twice as long for angles that nobody can foretell. Pure, real-time safe.
 
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@ namespace taktwerk::axes {
     return t + t * z * (low + middle * z4 + high * z8);
 }
 
-/// In [-pi, pi], right to 4e-16 of pi; both numbers finite, of less than 1e150. Of 0 and 0, or less than 1e-300: 0. As std::atan2, but for the
+/// In [-pi, pi], right to 4e-16 of the angle; both numbers finite, of less than 1e300. Of 0 and 0, or less than 1e-300: 0. As std::atan2, but for the
 /// sign of a cosine of zero, which does not matter. What is no number stays none.
 [[nodiscard]] inline double angle_of(double sine, double cosine) noexcept {
     constexpr double eighth = 0x1.921fb54442d18p-1, eighth_rest = 0x1.1a62633145c07p-55;  // pi / 4

@@ -23,7 +23,7 @@ double bits_off(double sine, double cosine) {
 
 TEST(AngleOf, IsRightToTwoBitsAllAround) {
     std::mt19937_64 random{5};
-    std::uniform_real_distribution<double> part{-1, 1}, exponent{-140, 140};
+    std::uniform_real_distribution<double> part{-1, 1}, exponent{-290, 290};
     double worst = 0;
     for (int i = 0; i < 300'000; ++i) {
         const double size = i % 2 == 0 ? 1 : std::pow(10, exponent(random)), other = i % 3 == 0 ? std::pow(10, exponent(random)) : size;
@@ -44,7 +44,7 @@ TEST(AngleOf, IsRightOnBothSidesOfEveryBorder) {
 }
 
 TEST(AngleOf, OnTheAxesItIsExact) {
-    for (const double size : {1e-290, 1.0, 3.7e149}) {
+    for (const double size : {1e-290, 1.0, 3.7e299}) {
         EXPECT_EQ(angle_of(0, size), 0);
         EXPECT_EQ(angle_of(size, 0), half_turn / 2);
         EXPECT_EQ(angle_of(-size, 0), -half_turn / 2);
