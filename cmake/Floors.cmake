@@ -181,7 +181,7 @@ function(taktwerk_tests folder)
       add_test(NAME ${binary} COMMAND ${binary} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
       set(patience 600)
       if(TAKTWERK_SANITIZE)
-        set(patience 900)  # a sanitized machine takes several times as long
+        set(patience 1500)  # a sanitized machine takes several times as long
       endif()
       set_tests_properties(${binary} PROPERTIES LABELS ${kind} TIMEOUT ${patience})
       list(FIND TAKTWERK_LONG_TESTS ${binary} place)

@@ -189,7 +189,7 @@ void report(const char* what, const Feeding& f) {
 }
 
 /// That nothing is found from somewhere: the cycle goes on meanwhile. It may take 15 ways to rest and 60 steps for each. Where an end has moved on, two beginnings are searched from.
-/// What it takes on average depends on the programs: of a campaign's hundreds 1.4 to 4.8 ways, so it is asked of the same ones alone.
+/// What it takes on average depends on the programs: of a campaign's hundreds 1.3 to 5.5 ways, so it is asked of the same ones alone.
 void expect_said_soon(const Feeding& f, bool the_usual_ones) {
     EXPECT_LE(f.most_tries, 17u);  // one way on, 15 to rest, the softest of them twice
     if (!the_usual_ones) return;
