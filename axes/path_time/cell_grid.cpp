@@ -14,12 +14,6 @@ constexpr int probes = 15;           // for a narrow place in a span
 constexpr int stations_between = 8;  // of a span that bends
 // A cell is at most this part of a run; of one where it bends; of one of many spans.
 constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
-constexpr double rest_share = 0.2;  // of the way with jerk that the piece at rest takes
-// That piece cannot be cut, and who wants to stand waits for its end: it lasts no longer than this at a beginning. Nor at the end of a curve: its
-// one jerk is what the limits allow at its moving end, which may be a tenth of what they allow where it stands.
-constexpr double longest_rest = 0.012;  // s
-// Nor is it shorter than this part of the run, however slow that is: cells have to be longer than a place's last digits.
-constexpr double shortest_rest = 1e-9;
 constexpr std::size_t most_cells = 200'000;  // a run that asks for more is not planned
 // Of the way in which a deceleration comes or goes, that cells at its ends are long; and the least part of a run that they are.
 constexpr double corner_share = 0.25, shortest_corner = 2.5e-8;
@@ -107,24 +101,13 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     add_breaks(task);
     coarse = grain == Grain::coarse || breaks.size() > long_run;
     const double whole = task.to - task.from;
-    const auto rest_length = [&](double at, CurveSide side, double room) {
-        const TimedCurvePoint point = curve.at(at, side);
-        const AlongLimits l = along_limits(point, limits, task.velocity_factor);
-        double way = whole / 12;  // a motion of jerk alone turns from speeding up to less of it there
-        const double a = std::min(l.acceleration, l.deceleration);
-        way = std::min(way, a * a * a / (6 * l.jerk * l.jerk));
-        way = std::min(way, std::sqrt(l.velocity / l.jerk) * l.velocity / 6);
-        const double rest = std::min(std::max(rest_share * way, shortest_rest * whole), room / 3);
-        const bool bends = std::any_of(point.second.begin(), point.second.end(), [](double second) { return second != 0; });
-        if (side == CurveSide::before && (!bends || task.halt_share > 0)) return rest;
-        return std::min(rest, std::max(l.jerk * longest_rest * longest_rest * longest_rest / 6, shortest_rest * whole));
-    };
     const bool from_rest = task.velocity <= 0;
     start = {};
     end = {};
-    if (from_rest) start.rest_length = rest_length(task.from, CurveSide::after, breaks[1] - breaks[0]);
+    RestRun run{task.from, task.to, task.velocity_factor, task.halt_share > 0};
+    if (from_rest) start.rest_length = rest_.length(curve, limits, run, CurveSide::after, breaks[1] - breaks[0]);
     else start = {0, task.velocity * task.velocity, 2 * task.acceleration};
-    end.rest_length = rest_length(task.to, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
+    end.rest_length = rest_.length(curve, limits, run, CurveSide::before, breaks.back() - breaks[breaks.size() - 2]);
 
     add_stations(whole / (coarse ? most_of_coarse_run : most_of_run), task.brake_way);
     if (task.halt_share > 0 || task.brake_way > 0) add_corners_of_halt(task);

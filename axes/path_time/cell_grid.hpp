@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "axes/path_time/curve.hpp"
+#include "axes/path_time/rest_length.hpp"
 #include "axes/path_time/speed_problem.hpp"
 
 namespace taktwerk::axes {
@@ -50,6 +51,7 @@ private:
     [[nodiscard]] bool too_long(double a, double b) const;
 
     const TimedCurve* curve_ = nullptr;
+    RestLength rest_;
     std::vector<double> stations_, sizes_;
     enum class Bends : std::uint8_t { not_at_all, little, much };
     std::vector<Bends> bends_;  // the curve behind the station

@@ -36,6 +36,7 @@ LimitUse RestCheck::use(std::span<const PathAxisLimits> limits, double velocity_
     const double velocity = std::sqrt(square);
     for (std::vector<double>* all : {&x_, &y_, &z_}) all->resize(count);
     LimitUse whole;
+    most_jerk_.assign(count, 0);
     const auto add = [&](const auto& of_point) {
         for (std::size_t k = 0; k < count; ++k) {
             const double time = static_cast<double>(k) / static_cast<double>(count - 1);
@@ -43,6 +44,7 @@ LimitUse RestCheck::use(std::span<const PathAxisLimits> limits, double velocity_
                                2 * square * velocity / (9 * length * length)};
             const LimitUse u = of_point(points_[k], m);
             x_[k] = u.velocity, y_[k] = u.acceleration, z_[k] = u.jerk;
+            most_jerk_[k] = std::max(most_jerk_[k], std::fabs(u.jerk));
         }
         whole.widen({sampled_peak(x_), sampled_peak(y_), sampled_peak(z_)});
     };
@@ -57,6 +59,14 @@ LimitUse RestCheck::use(std::span<const PathAxisLimits> limits, double velocity_
                             (p.first[i] * m.jerk + 3 * p.second[i] * v * a + p.third[i] * v * v * v) / limits[i].jerk};
         });
     return whole;
+}
+
+double RestCheck::jerk_throughout(const TimedCurve& curve, std::span<const PathAxisLimits> limits, double at, double length,
+                                  CurveSide side) {
+    sample(curve, at, length, side, fewest_samples);
+    (void)use(limits, 1, length, side == CurveSide::after ? 1 : -1, 1);
+    const auto [least, most] = std::minmax_element(most_jerk_.begin(), most_jerk_.end());
+    return *most > 0 ? *least / *most : 1;
 }
 
 /// One motion says it for all: so first one whose v2 is 1, then the one that this allows, near whose limits what is between the samples counts. And

@@ -138,6 +138,9 @@ public:
         a_[0] = problem_.acceleration;
         s_[n] = problem_.to;
         v_[n] = a_[n] = 0;
+        // Beside a break by no more than its last digit, but on its own side.
+        for (std::size_t k = n; k-- > 0;) s_[k] = std::min(s_[k], s_[k + 1]);
+        for (std::size_t k = 1; k <= n; ++k) s_[k] = std::max(s_[k], s_[k - 1]);
         for (std::size_t k = 0; k < n; ++k) {
             h_[k] = times[k + 1] - times[k];
             j_[k] = (a_[k + 1] - a_[k]) / h_[k];

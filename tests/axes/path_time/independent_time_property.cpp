@@ -29,14 +29,6 @@ namespace {
 
 // ------------------------------------------------------------------------------------------------------------------ from rest
 
-/// So many of them, evenly.
-std::vector<Case> some_of(std::vector<Case> all, std::size_t count) {
-    std::vector<Case> some;
-    count = std::min(count, all.size());
-    for (std::size_t i = 0; i < count; ++i) some.push_back(std::move(all[i * all.size() / count]));
-    return some;
-}
-
 // What the limits are looked at with: the derivatives are those of the axes' places, by differences.
 TEST(IndependentTime, DerivativesAreThoseOfThePlaces) {
     for (const auto& all : {cases_of_the_project(), own_cases()})
