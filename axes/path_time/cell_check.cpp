@@ -121,6 +121,8 @@ bool cubic_between(const Samples& x) {
 
 PathAxisLimits reciprocal(const PathAxisLimits& l) { return {1 / l.velocity, 1 / l.acceleration, 1 / l.jerk}; }
 
+bool stands(const TimedCurvePoint& p, std::size_t axis) { return p.first[axis] == 0 && p.second[axis] == 0 && p.third[axis] == 0; }
+
 double at_nodes(const Samples& x) { return std::max(std::fabs(x.front()), std::fabs(x.back())); }
 
 void Looks::add_to(CellUse& use) const {
@@ -272,6 +274,9 @@ CellUse CellCheck::use(std::size_t cell, const CellSquares& q, double velocity_f
     if (looks.unsure()) return directly();
     looks.add_to(use);
     for (std::size_t i = 0; i < limits_.size(); ++i) {
+        if (stands(begins_[cell], i) && stands(middles_[cell], i) && stands(ends_[cell], i) &&
+            (way == Between::halves || (stands(quarters_[cell], i) && stands(three_quarters_[cell], i))))
+            continue;
         const PathAxisLimits over = reciprocal(limits_[i]);
         const auto exact = [&](std::size_t k, const TimedCurvePoint& p) { looks.of_axis(k, over, m, p.first[i], p.second[i], p.third[i]); };
         const auto part = [&](std::size_t from, std::size_t count, const TimedCurvePoint& a, const TimedCurvePoint& b) {

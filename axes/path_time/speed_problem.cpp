@@ -35,6 +35,8 @@ void SpeedProblem::begin(const std::vector<double>& nodes, const SpeedEnd& start
     places_.clear();
     plain_.clear();
     jerk_.clear();
+    plain_limits_.clear();
+    jerk_limits_.clear();
 }
 
 /// Node `node` through the middles around `cell`, which is the cell before or behind it.
@@ -101,8 +103,9 @@ void SpeedProblem::add_side(const Triple& l, double sign, double limit, Bound ki
     if (!half_) {
         // A side that says nothing, until another one takes its place.
         Pair empty{};
-        empty.limit = empty.wanted = empty.bound = empty.inverse = Lanes{1, 1};
+        empty.bound = empty.inverse = Lanes{1, 1};
         plain_.push_back(empty);
+        plain_limits_.push_back({Lanes{1, 1}, Lanes{1, 1}, {}});
         ++places_.back().plain_count;
     }
     Pair& p = plain_.back();
@@ -111,9 +114,10 @@ void SpeedProblem::add_side(const Triple& l, double sign, double limit, Bound ki
     p.g1[lane] = sign * l.g[1];
     p.g2[lane] = sign * l.g[2];
     p.k[lane] = sign * l.k;
-    p.limit[lane] = limit;
-    p.wanted[lane] = limit * share_of(kind, all_);
-    p.kind[lane] = kind;
+    PairLimits& limits = plain_limits_.back();
+    limits.limit[lane] = limit;
+    limits.wanted[lane] = limit * share_of(kind, all_);
+    limits.kind[lane] = kind;
     half_ = !half_;
 }
 
@@ -135,9 +139,9 @@ void SpeedProblem::add_jerk(const SpeedRow& row) {
     p.g1 = Lanes{l.g[1], -l.g[1]};
     p.g2 = Lanes{l.g[2], -l.g[2]};
     p.k = Lanes{l.k, -l.k};
-    p.limit = Lanes{row.above, row.below};
-    p.wanted = p.limit * all_.jerk;
     jerk_.push_back(p);
+    const Lanes limit{row.above, row.below};
+    jerk_limits_.push_back({limit, limit * all_.jerk, {}});
     ++places_.back().jerk_count;
 }
 
@@ -155,11 +159,11 @@ double SpeedProblem::share_of(Bound kind, const CellShare& share) noexcept {
 void SpeedProblem::share(int cell, CellPlace place, const CellShare& share) {
     const Place& p = places_[3 * static_cast<std::size_t>(cell) + static_cast<std::size_t>(place)];
     for (int i = 0; i < p.plain_count; ++i) {
-        Pair& pair = plain_[static_cast<std::size_t>(p.plain + i)];
+        PairLimits& pair = plain_limits_[static_cast<std::size_t>(p.plain + i)];
         for (int lane = 0; lane < 2; ++lane) pair.wanted[lane] = pair.limit[lane] * share_of(pair.kind[lane], share);
     }
     for (int i = 0; i < p.jerk_count; ++i) {
-        Pair& pair = jerk_[static_cast<std::size_t>(p.jerk + i)];
+        PairLimits& pair = jerk_limits_[static_cast<std::size_t>(p.jerk + i)];
         pair.wanted = pair.limit * share.jerk;
     }
 }
@@ -177,7 +181,7 @@ void SpeedProblem::look_at_squares(const CellRange& range) {
         const double* q = p.square.g;
         p.v2 = p.square.k + q[0] * d_[c] + q[1] * d_[c + 1] + q[2] * d_[c + 2];
         p.over_v = 1 / std::sqrt(p.v2);
-        p.cube = p.over_v / p.v2;
+        p.cube = p.over_v * p.over_v * p.over_v;
     });
 }
 
@@ -188,8 +192,8 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
     hard_beyond_ = soft_beyond_ = 0;
     each_place(range, [&](Place& p, std::size_t c) {
         const double d0 = d_[c], d1 = d_[c + 1], d2 = d_[c + 2];
-        const auto look = [&](Pair& x, double size) {
-            const Lanes value = x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2, used = value / size, limit = x.wanted;
+        const auto look = [&](Pair& x, PairLimits& own, double size) {
+            const Lanes value = x.k + x.g0 * d0 + x.g1 * d1 + x.g2 * d2, used = value / size, limit = own.wanted;
             const Lanes before = x.bound > limit ? x.bound : limit;
             Lanes bound = used >= limit * (1 - hair) ? used + beyond * (limit > used ? limit : used) : limit;
             if (room == Room::less) bound = bound < before ? bound : before;
@@ -200,13 +204,13 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
             x.bound = bound;
             for (int lane = 0; lane < 2; ++lane) {
                 if (!(bound[lane] > limit[lane])) {
-                    if (room == Room::first && x.kind[lane] == Bound::soft_cap && holds_) x.kind[lane] = Bound::held_cap;
+                    if (room == Room::first && own.kind[lane] == Bound::soft_cap && holds_) own.kind[lane] = Bound::held_cap;
                     continue;
                 }
                 // What the cells beside the range do alone stays as it is, whatever it is.
                 const bool beside = (static_cast<int>(c) == range.first - 1 && !(x.g2[lane] != 0)) ||
                                     (static_cast<int>(c) == range.last && !(x.g0[lane] != 0));
-                if (x.kind[lane] == Bound::soft_cap) {
+                if (own.kind[lane] == Bound::soft_cap) {
                     soft_beyond_ += bound[lane] / limit[lane] - 1;
                 } else if (!beside) {
                     feasible_ = false;
@@ -217,8 +221,14 @@ void SpeedProblem::relax(const CellRange& range, Room room, double beyond) {
             x.z *= inverse / x.inverse;  // as central as before
             x.inverse = inverse;
         };
-        for (int i = 0; i < p.plain_count; ++i) look(plain_[static_cast<std::size_t>(p.plain + i)], 1);
-        for (int i = 0; i < p.jerk_count; ++i) look(jerk_[static_cast<std::size_t>(p.jerk + i)], p.over_v);
+        for (int i = 0; i < p.plain_count; ++i) {
+            const auto k = static_cast<std::size_t>(p.plain + i);
+            look(plain_[k], plain_limits_[k], 1);
+        }
+        for (int i = 0; i < p.jerk_count; ++i) {
+            const auto k = static_cast<std::size_t>(p.jerk + i);
+            look(jerk_[k], jerk_limits_[k], p.over_v);
+        }
     });
 }
 
@@ -227,7 +237,7 @@ bool SpeedProblem::let_go(const CellRange& range) {
     bool any = false;
     each_place(range, [&](Place& p, std::size_t) {
         for (int i = 0; i < p.plain_count; ++i)
-            for (Bound& kind : plain_[static_cast<std::size_t>(p.plain + i)].kind)
+            for (Bound& kind : plain_limits_[static_cast<std::size_t>(p.plain + i)].kind)
                 if (kind == Bound::held_cap) {
                     kind = Bound::soft_cap;
                     any = true;
@@ -240,7 +250,7 @@ void SpeedProblem::hold(int cell) {
     const auto c = static_cast<std::size_t>(cell);
     for (std::size_t k = cell > 0 ? 3 * c - 1 : 0; k < 3 * c + 3; ++k)  // a node's caps are at the end of the cell before, as a rule
         for (int i = 0; i < places_[k].plain_count; ++i)
-            for (Bound& kind : plain_[static_cast<std::size_t>(places_[k].plain + i)].kind)
+            for (Bound& kind : plain_limits_[static_cast<std::size_t>(places_[k].plain + i)].kind)
                 if (kind == Bound::soft_cap) kind = Bound::held_cap;
 }
 
@@ -282,7 +292,7 @@ void SpeedProblem::assemble(const CellRange& range, double mu) {
             const Place& p = places_[3 * c + k];
             const double* q = p.square.g;
             const double pull = 0.5 * scale_ * p.weight * p.cube;
-            add(Lanes{q[0], 0}, Lanes{q[1], 0}, Lanes{q[2], 0}, Lanes{1.5 * pull / p.v2, 0}, Lanes{-pull, 0});
+            add(Lanes{q[0], 0}, Lanes{q[1], 0}, Lanes{q[2], 0}, Lanes{1.5 * pull * (p.over_v * p.over_v), 0}, Lanes{-pull, 0});
             for (int i = 0; i < p.plain_count; ++i) {
                 const Pair& x = plain_[static_cast<std::size_t>(p.plain + i)];
                 add(x.g0, x.g1, x.g2, x.z * x.inverse, mu * x.inverse);
@@ -372,7 +382,7 @@ double SpeedProblem::take_step(const CellRange& range, double mu, double step) {
     const auto next = [&](Pair& x, const Lanes& left) {
         const Lanes full = mu * x.inverse + x.z * x.move;
         x.inverse = 1 / left;
-        const Lanes middle = mu * x.inverse, least = middle / off_centre, most = middle * off_centre;
+        const Lanes middle = mu * x.inverse, least = middle * (1 / off_centre), most = middle * off_centre;
         x.z = full < least ? least : full > most ? most : full;
         gap += x.z * left;
     };
@@ -399,13 +409,17 @@ void SpeedProblem::come_inside(std::vector<double>& d, double room) {
     look_at_squares(all);
     double most = 0;
     each_place(all, [&](Place& p, std::size_t c) {
-        const auto use = [&](const Pair& x) {
-            const Lanes u = (x.k + x.g0 * d_[c] + x.g1 * d_[c + 1] + x.g2 * d_[c + 2]) / x.wanted;
+        const auto use = [&](const Pair& x, const PairLimits& limits) {
+            const Lanes u = (x.k + x.g0 * d_[c] + x.g1 * d_[c + 1] + x.g2 * d_[c + 2]) / limits.wanted;
             return std::max(u[0], u[1]);
         };
-        for (int i = 0; i < p.plain_count; ++i) most = std::max(most, use(plain_[static_cast<std::size_t>(p.plain + i)]));
+        for (int i = 0; i < p.plain_count; ++i) {
+            const auto k = static_cast<std::size_t>(p.plain + i);
+            most = std::max(most, use(plain_[k], plain_limits_[k]));
+        }
         for (int i = 0; i < p.jerk_count; ++i) {
-            const double cube = use(jerk_[static_cast<std::size_t>(p.jerk + i)]) / p.over_v;
+            const auto k = static_cast<std::size_t>(p.jerk + i);
+            const double cube = use(jerk_[k], jerk_limits_[k]) / p.over_v;
             if (cube * cube > most * most * most) {
                 const double root = math::cbrt(cube);
                 most = root * root;

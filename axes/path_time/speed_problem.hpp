@@ -104,12 +104,16 @@ private:
         double weight = 0;  // in the time
         int plain = 0, plain_count = 0, jerk = 0, jerk_count = 0;
         // of the present iterate
-        double v2 = 0, over_v = 0, cube = 0;
+        double v2 = 0, over_v = 0, cube = 0;  // cube: 1/v3
     };
     /// Two inequalities g d + k <= bound: for a jerk both sides of one row, with bound/v. `inverse` of what is left, z the multiplier, `move` of what is
-    /// left by a step, as its part.
+    /// left by a step, as its part. Two lines of the cache: every step reads all of them.
     struct Pair {
-        Lanes g0, g1, g2, k, limit, wanted, bound, z, inverse, move;
+        Lanes g0, g1, g2, k, bound, z, inverse, move;
+    };
+    /// The limits that a pair's bound comes from.
+    struct PairLimits {
+        Lanes limit, wanted;
         Bound kind[2];
     };
 
@@ -138,9 +142,10 @@ private:
     CellShare all_{};
     std::vector<Place> places_;  // three per cell
     std::vector<Pair> plain_, jerk_;
-    Triple square_, slope_, bend_;  // of the last place
-    bool half_ = false;             // the last plain pair has room for another side
-    std::vector<double> d_;         // middles, one more at both ends
+    std::vector<PairLimits> plain_limits_, jerk_limits_;  // of each pair
+    Triple square_, slope_, bend_;                        // of the last place
+    bool half_ = false;                                   // the last plain pair has room for another side
+    std::vector<double> d_;                               // middles, one more at both ends
     std::vector<double> band_, right_;
     double scale_ = 1;      // of the goal
     double decrement_ = 0;  // Newton's: what a step promises
