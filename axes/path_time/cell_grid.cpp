@@ -17,6 +17,8 @@ constexpr int most_of_run = 72, most_of_bent_run = 144, most_of_coarse_run = 24;
 constexpr std::size_t most_cells = 200'000;  // a run that asks for more is not planned
 // Of the way in which a deceleration comes or goes, that cells at its ends are long; and the least part of a run that they are.
 constexpr double corner_share = 0.25, shortest_corner = 2.5e-8;
+// Of v2, that the first cell behind a state of motion with a lowered velocity may rise.
+constexpr double least_rise = 2e-4, most_rise = 0.02;
 constexpr double cells_of_braking = 40;  // to a lowered velocity
 // Cells per feature of the curve: a run of many spans is planned more coarsely (which costs it half a percent of its time).
 constexpr std::size_t long_run = 64;
@@ -113,9 +115,12 @@ void CellGrid::make(const TimedCurve& curve, std::span<const PathAxisLimits> lim
     if (task.halt_share > 0 || task.brake_way > 0) add_corners_of_halt(task);
     // A quadratic with this beginning has to stay positive over the first cell.
     if (!from_rest && start.slope < 0) sizes_.front() = std::min(sizes_.front(), 0.7 * start.square / -start.slope);
-    // Nor may it carry one who is below a lowered velocity far above it.
-    if (start.slope > 0 && task.velocity_factor < 1 && task.brake_way <= 0)
-        sizes_.front() = std::min(sizes_.front(), 0.02 * start.square / start.slope);
+    // Nor may it carry one who is below a lowered velocity above it: its middle is given by the slope.
+    if (start.slope > 0 && task.velocity_factor < 1 && task.brake_way <= 0) {
+        const double wanted = task.velocity_factor * curve.at(task.from, CurveSide::after).path.velocity;
+        const double room = wanted * wanted - start.square;
+        sizes_.front() = std::min(sizes_.front(), std::clamp(room, least_rise * start.square, most_rise * start.square) / start.slope);
+    }
     if (from_rest) sizes_.front() = std::min(sizes_.front(), growth * start.rest_length);
     sizes_.back() = std::min(sizes_.back(), growth * end.rest_length);
     add_nodes();

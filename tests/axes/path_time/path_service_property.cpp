@@ -227,7 +227,7 @@ TEST(PathServiceProperty, FeedingOverrideHaltsAndLatePlansKeepEveryLimit) {
 // plan was found, and all of it was above), or stood above by a hair (the others).
 TEST(PathServiceProperty, ProgramsThatFailedOnce) {
     Feeding totals;
-    for (const std::uint64_t seed : {798, 2400, 129, 545, 35, 245, 315, 376, 567, 832, 1830, 62, 489, 399, 1046}) {
+    for (const std::uint64_t seed : {798, 2400, 129, 545, 35, 245, 315, 376, 567, 832, 1830, 62, 489, 399, 1046, 10172}) {
         SCOPED_TRACE(::testing::Message() << "seed " << seed);
         FedProgram(seed, totals).run(true);
     }
