@@ -20,7 +20,7 @@ constexpr int times_shorter = 10;
 
 }  // namespace
 
-/// The velocity from which a motion without limits of jerk, as fast as can be, first slows down on its way from that end of the run.
+/// The velocity from which a motion that knows no jerk but that of the curve itself, as fast as can be, first slows down on its way from that end of the run.
 double RestLength::first_peak(const TimedCurve& curve, std::span<const PathAxisLimits> limits, const RestRun& run, CurveSide side) {
     const bool begins = side == CurveSide::after;
     const auto way = [&](std::size_t k) {
@@ -31,8 +31,10 @@ double RestLength::first_peak(const TimedCurve& curve, std::span<const PathAxisL
         const TimedCurvePoint p = curve.at(begins ? run.from + way(k) : run.to - way(k), side);
         const AlongLimits l = along_limits(p, limits, run.velocity_factor);
         double square = l.velocity * l.velocity;
-        for (std::size_t i = 0; i < limits.size(); ++i)
+        for (std::size_t i = 0; i < limits.size(); ++i) {
             if (p.second[i] != 0) square = std::min(square, limits[i].acceleration / std::fabs(p.second[i]));
+            if (p.third[i] != 0) square = std::min(square, two_thirds(limits[i].jerk / std::fabs(p.third[i])));
+        }
         squares_[k] = square;
         accelerations_[k] = std::min(l.acceleration, l.deceleration);
     }
@@ -52,9 +54,11 @@ double RestLength::length(const TimedCurve& curve, std::span<const PathAxisLimit
     const double at = begins ? run.from : run.to, whole = run.to - run.from, shortest = shortest_rest * whole;
     const TimedCurvePoint point = curve.at(at, side);
     const AlongLimits l = along_limits(point, limits, run.velocity_factor);
-    const bool bends = std::any_of(point.second.begin(), point.second.end(), [](double second) { return second != 0; }) && !run.halts;
+    const auto any = [](const auto& of_axes) { return std::any_of(of_axes.begin(), of_axes.end(), [](double x) { return x != 0; }); };
+    const bool bends = (any(point.second) || any(point.third)) && !run.halts;
     double way = whole / 12;  // a motion of jerk alone turns from speeding up to less of it there
-    const double a = std::min(l.acceleration, l.deceleration), v = bends ? first_peak(curve, limits, run, side) : l.velocity;
+    const double a = std::min(l.acceleration, l.deceleration),
+                 v = bends ? std::min(l.velocity, first_peak(curve, limits, run, side)) : l.velocity;
     way = std::min(way, a * a * a / (6 * l.jerk * l.jerk));
     way = std::min(way, std::sqrt(v / l.jerk) * v / 6);
     double length = std::min(std::max(rest_share * way, shortest), room / 3);

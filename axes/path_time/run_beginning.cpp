@@ -106,6 +106,7 @@ void RunPlanner::take_over(const RunShape& former) {
         for (const double node : grid_.nodes)
             if (node > nodes.back() + 1e-9 * whole) nodes.push_back(node);
     if (!own_cells) grid_.nodes.swap(nodes);
+    if (!own_cells && !same_end) grid_.end.rest_length = task_.to - grid_.nodes.back();  // a last cell of no length was left out
     shares_.assign(grid_.nodes.size() - 1, untouched);
     make_problem();
 
