@@ -63,10 +63,10 @@ TEST(IndependentTime, TheWayBackTakesAsLong) {
 // Both may be slow: 5 % above what is found where that piece lasted 12 ms whatever the curve did.
 TEST(IndependentTime, AnEndOnAnArcIsComeToSoon) {
     Gaps gaps;
-    for (const ArcEnd& end : some_of(ends(), in_depth() ? 1000 : 3))
+    for (const ArcEnd& end : in_depth() ? ends() : std::vector<ArcEnd>{{0.5, 0.1, 0.05}, {0.5, 0.03, 0}, {5, 0.01, -0.05}})
         for (const bool back : {false, true}) from_rest(end.heading(back), 0, gaps);
     gaps.report("ends on arcs");
-    EXPECT_LE(gaps.all.back(), promised);
+    EXPECT_LE(gaps.all.back(), 0.0095);  // 1.05 % where the piece is looked at no further than it goes
 }
 
 // Drawn 33 was 11 % above what is found, 378 3.8 %: its way to rest comes out of a narrow place.
