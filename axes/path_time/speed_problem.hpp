@@ -107,7 +107,7 @@ private:
         double v2 = 0, over_v = 0, cube = 0;  // cube: 1/v3
     };
     /// Two inequalities g d + k <= bound: for a jerk both sides of one row, with bound/v. `inverse` of what is left, z the multiplier, `move` of what is
-    /// left by a step, as its part. Two lines of the cache: every step reads all of them.
+    /// left by a step, as its part. What a step reads: 128 bytes.
     struct Pair {
         Lanes g0, g1, g2, k, bound, z, inverse, move;
     };

@@ -74,7 +74,7 @@ TEST(IndependentTime, DrawnEndsOnArcsAreComeToSoon) {
     Gaps gaps;
     for (const std::uint64_t seed : {2, 33, 61, 225, 378}) from_rest(drawn_case(seed), 0, gaps);
     gaps.report("drawn ends on arcs");
-    EXPECT_LE(gaps.all.back(), promised_drawn);
+    EXPECT_LE(gaps.all.back(), in_depth() ? 0.025 : 0.015);  // 3.8 and 2.05 % where that piece lasted 12 ms
 }
 
 /// Limits as a stranger drew them: exponents of velocity, of its times, and of the second axis' shares.
@@ -94,6 +94,7 @@ Case step_of_slope(const std::string& name, double middle, double width, bool ba
 
 // What somebody who wrote none of it found when the piece took its length from the first peak of velocity alone, though the end allowed much less (8.3 and 3.8 %), from one that
 // did not know what the third derivative costs (5.8 %), and when an end without curvature that has one beside it counted as straight (3.4 %). Each feasible in the time given, by his formulas.
+// (The second is slow on his cells alone: here it shows that it stays so. Before any of it the last was late, not the others.)
 TEST(IndependentTime, EndsThatSomebodyElseFoundAreComeToSoon) {
     struct Known {
         Case c;
